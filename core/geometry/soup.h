@@ -1,0 +1,34 @@
+#pragma once
+
+#include "core/base/result.h"
+#include "core/geometry/surface.h"
+
+namespace lamella {
+
+struct SoupParams {
+  double weld_tolerance = 1e-4;  ///< of the box diagonal: open cracks narrower than this are closed
+  double feature_angle = 0.6;    ///< radians between normals that makes a feature edge
+};
+
+/// Turns triangles without connectivity (an STL) into a watertight, outward, manifold surface
+/// segmented into patches between feature edges. Exact duplicates of points merge; cracks are welded
+/// only as far as needed; wrongly wound facets and inside-out shells are turned.
+/// Errors: bad_input, with counts and a place: open edges left, non-manifold edges, duplicates,
+/// no volume.
+/// `notes` (may be null) gets a sentence for everything that was repaired.
+Result<ReferenceSurface<3>> surface_from_soup(const std::vector<std::array<Vec<3>, 3>>& soup,
+                                              const SoupParams& params = {},
+                                              std::vector<std::string>* notes = nullptr);
+
+/// Volume enclosed by a closed surface, eq. (1.23), mm^D.
+template <int D>
+double enclosed_measure(const ReferenceSurface<D>& surface);
+
+/// Closedness and winding: ok, or bad_input naming the count and one place of the first finding.
+template <int D>
+Result<void> check_closed(const ReferenceSurface<D>& surface);
+
+/// Feature edges and corners where facets meet at more than `angle` radians or different faces meet.
+void find_features(ReferenceSurface<3>& surface, double angle);
+
+}  // namespace lamella

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/geometry/surface.h"
+#include "core/mesh/simplex_mesh.h"
+#include "core/metric/metric.h"
+#include "core/optimize/generate.h"
+#include "core/study/record.h"
+#include "core/study/study.h"
+
+namespace lamella {
+
+/// A mesh and what is known at its nodes and elements; shared, never changed.
+struct MeshState {
+  SimplexMesh<3> mesh;
+  MetricField<3> metric;               ///< [node] natural metric asked at the node
+  std::vector<double> thickness;       ///< [node] wall thickness 2 r, mm; entry 0 unused
+  std::vector<double> layers;          ///< [node] layers measured back; NaN where not measured
+  std::vector<double> quality;         ///< [element] c(T), eq. (3.7), in `metric`
+};
+
+/// What became of one body.
+struct BodyOutcome {
+  std::string name;
+  int layers_asked = 0;
+  std::string first_mesh_by;       ///< name of the mesher that made the first mesh
+  double cad_volume = 0;           ///< mm^3
+  double mesh_volume = 0;          ///< mm^3
+  double boundary_distance = 0;    ///< mm, largest distance of boundary sample points to the surface
+  double chord_tolerance = 0;      ///< mm, the one that was used
+  double h_min = 0;                ///< mm, the one that was used
+  LayerStats layers;
+  std::vector<IterationRecord> records;
+  std::vector<std::string> notes;
+};
+
+struct Outcome {
+  std::shared_ptr<const MeshState> state;  ///< all bodies in one mesh
+  std::vector<BodyOutcome> bodies;
+  std::vector<IterationRecord> records;    ///< of the whole
+  bool cancelled = false;                  ///< stopped early: `state` is the best so far
+  bool converged = false;                  ///< every body reached its layers and settled
+  double seconds = 0;
+};
+
+/// Told after each iteration, from the worker thread.
+using IterationSink =
+    std::function<void(const IterationRecord&, std::shared_ptr<const MeshState>)>;
+
+/// The main loop: first mesh, then metric -> adapt -> record until layers and nodes settle.
+/// Cancel after the first mesh exists returns an Outcome with `cancelled` set; before, an Error.
+/// `meshers` are tried in order for the first mesh of each body.
+/// Errors: usage (no body, n < 1), failed (no mesher could mesh a body), cancelled.
+Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
+                    const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+                    Progress progress = {}, IterationSink on_iteration = {});
+
+}  // namespace lamella

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lamella {
+
+/// What the user asked for one body. Lengths in mm.
+struct BodySettings {
+  std::string name;
+  int layers = 4;                  ///< n, elements through the thickness, >= 1
+  double alpha = 1;                ///< alpha_h of (4.68): sizes up to (1 + alpha) h1 are divided
+  std::optional<double> h_min{};   ///< unset: 1e-3 of the body's box diagonal
+  std::optional<double> h_max{};   ///< unset: no bound
+  bool visible = true;
+};
+
+/// How the mesh is made. Lengths in mm.
+struct StudyOptions {
+  std::optional<double> chord_tolerance{};  ///< unset: 1e-3 of the box diagonal of each body
+  double angle_tolerance = 0.35;            ///< radians between neighbors of the tessellation
+  int iterations = 6;                       ///< adaptions at most
+  int threads = 0;                          ///< 0: all cores; the mesh does not depend on it
+  std::uint64_t seed = 1;
+};
+
+/// One immutable value: what the user asked. The files are named, never held.
+struct Study {
+  std::string name = "untitled";
+  std::vector<std::string> inputs;   ///< STEP or STL files, relative to the study's folder
+  std::vector<BodySettings> bodies;  ///< by part name; a part without an entry gets the defaults
+  StudyOptions options;
+};
+
+/// The settings of the part called `name`: its entry, or the defaults of BodySettings.
+BodySettings settings_of(const Study& study, const std::string& name);
+
+}  // namespace lamella
