@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "core/base/result.h"
+
+namespace lamella {
+
+/// A file that appears complete or not at all: it is written beside its target under a hidden name,
+/// flushed to the disk and renamed by `commit`. Without `commit` nothing is left behind and an
+/// older target stays as it was. A target that is no regular file (a pipe, /dev/stdout) is written
+/// directly.
+class AtomicFile {
+ public:
+  /// Errors: io (no such folder, no permission, target is a folder).
+  static Result<AtomicFile> create(const std::filesystem::path& target);
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  ~AtomicFile();
+
+  /// Where to write, for libraries that open files themselves.
+  const std::filesystem::path& temporary() const { return temporary_; }
+  /// Stream to the temporary file, binary, open since `create`.
+  std::ostream& stream() { return stream_; }
+  /// Errors: io (disk full, renaming failed); the temporary file is gone then.
+  Result<void> commit();
+
+ private:
+  AtomicFile() = default;
+  std::filesystem::path target_, temporary_;
+  std::ofstream stream_;
+};
+
+/// Writes the bytes in one step. Errors: as AtomicFile.
+Result<void> write_file(const std::filesystem::path& target, std::string_view bytes);
+
+/// Whole content of a file. Errors: io (missing, a folder, unreadable), naming the file.
+Result<std::string> read_file(const std::filesystem::path& file);
+
+}  // namespace lamella
