@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "core/base/progress.h"
@@ -28,10 +27,6 @@ struct AdaptParams {
   int sweeps = 24;              ///< upper bound; the work set empties before
   std::uint64_t seed = 1;
 };
-
-/// Metric as a function of position, thread-safe.
-template <int D>
-using MetricFunction = std::function<Metric<D>(const Vec<D>&)>;
 
 template <int D>
 struct Adapted {
