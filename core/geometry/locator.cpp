@@ -1,0 +1,373 @@
+#include "core/geometry/locator.h"
+
+#include <limits>
+#include <numeric>
+#include <span>
+#include <tuple>
+
+#include "core/geometry/bvh.h"
+
+namespace lamella {
+namespace {
+
+/// Foot of x on one facet: the point, and which of its vertices carry it (bit k: vertex k). All
+/// bits: inside the facet; one bit: a vertex.
+template <int D>
+struct Foot {
+  Vec<D> point;
+  unsigned carriers;
+};
+
+template <int D>
+Foot<D> foot_on_segment(const Vec<D>& a, const Vec<D>& b, const Vec<D>& x, unsigned bit_a,
+                        unsigned bit_b) {
+  const Vec<D> e = b - a;
+  const double s = e.dot(x - a);
+  const double length2 = e.squaredNorm();
+  if (s <= 0 || length2 == 0) return {a, bit_a};
+  if (s >= length2) return {b, bit_b};
+  return {a + (s / length2) * e, bit_a | bit_b};
+}
+
+Foot<2> foot_on_facet(const std::array<Vec<2>, 2>& p, const Vec<2>& x) {
+  return foot_on_segment<2>(p[0], p[1], x, 1, 2);
+}
+
+Foot<3> foot_on_facet(const std::array<Vec<3>, 3>& p, const Vec<3>& x) {
+  // Regions of Voronoi: a vertex, an edge, or the face, told apart by signs of dot products.
+  const Vec<3> ab = p[1] - p[0], ac = p[2] - p[0], ax = x - p[0];
+  const double d1 = ab.dot(ax), d2 = ac.dot(ax);
+  if (d1 <= 0 && d2 <= 0) return {p[0], 1};
+  const Vec<3> bx = x - p[1];
+  const double d3 = ab.dot(bx), d4 = ac.dot(bx);
+  if (d3 >= 0 && d4 <= d3) return {p[1], 2};
+  const Vec<3> cx = x - p[2];
+  const double d5 = ab.dot(cx), d6 = ac.dot(cx);
+  if (d6 >= 0 && d5 <= d6) return {p[2], 4};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return foot_on_segment<3>(p[0], p[1], x, 1, 2);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return foot_on_segment<3>(p[0], p[2], x, 1, 4);
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return foot_on_segment<3>(p[1], p[2], x, 2, 4);
+  const double sum = va + vb + vc;
+  if (sum > 0) return {p[0] + (vb / sum) * ab + (vc / sum) * ac, 7};
+  // A facet without area: the nearest of its edges.
+  Foot<3> best = foot_on_segment<3>(p[0], p[1], x, 1, 2);
+  for (const auto& f :
+       {foot_on_segment<3>(p[0], p[2], x, 1, 4), foot_on_segment<3>(p[1], p[2], x, 2, 4)})
+    if ((f.point - x).squaredNorm() < (best.point - x).squaredNorm()) best = f;
+  return best;
+}
+
+/// A ray against a block of facets. The edge functions of two facets that share vertices are
+/// computed from the same numbers and differ only in sign, so no ray passes between them.
+template <int D>
+struct RayTest;
+
+template <>
+struct RayTest<3> {
+  int kx, ky, kz;
+  double ox, oy, oz, sx, sy, sz;
+
+  RayTest(const Vec<3>& o, const Vec<3>& u) {
+    u.cwiseAbs().maxCoeff(&kz);
+    kx = (kz + 1) % 3;
+    ky = (kx + 1) % 3;
+    if (u[kz] < 0) std::swap(kx, ky);  // keeps the winding
+    sx = u[kx] / u[kz];
+    sy = u[ky] / u[kz];
+    sz = 1 / u[kz];
+    ox = o[kx];
+    oy = o[ky];
+    oz = o[kz];
+  }
+
+  template <class Block>
+  void operator()(const Block& block, double t_min, double& t_max, std::int32_t& facet) const {
+    double x[3][4], y[3][4], z[3][4];
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 4; ++k) {
+        z[i][k] = block.v[i][kz][k] - oz;
+        x[i][k] = (block.v[i][kx][k] - ox) - sx * z[i][k];
+        y[i][k] = (block.v[i][ky][k] - oy) - sy * z[i][k];
+      }
+    double u[4], v[4], w[4];
+    for (int k = 0; k < 4; ++k) {
+      u[k] = x[2][k] * y[1][k] - y[2][k] * x[1][k];
+      v[k] = x[0][k] * y[2][k] - y[0][k] * x[2][k];
+      w[k] = x[1][k] * y[0][k] - y[1][k] * x[0][k];
+    }
+    for (int k = 0; k < 4; ++k) {
+      if (u[k] > 0 || v[k] > 0 || w[k] > 0) continue;  // outside, or entering the body
+      const double det = u[k] + v[k] + w[k];
+      if (!(det < 0)) continue;
+      const double t = sz * (u[k] * z[0][k] + v[k] * z[1][k] + w[k] * z[2][k]) / det;
+      if (t > t_min && t < t_max) {
+        t_max = t;
+        facet = block.facet[k];
+      }
+    }
+  }
+};
+
+template <>
+struct RayTest<2> {
+  Vec<2> o, u;
+
+  RayTest(const Vec<2>& origin, const Vec<2>& direction) : o(origin), u(direction) {}
+
+  template <class Block>
+  void operator()(const Block& block, double t_min, double& t_max, std::int32_t& facet) const {
+    for (int k = 0; k < 4; ++k) {
+      const Vec<2> a{block.v[0][0][k] - o[0], block.v[0][1][k] - o[1]};
+      const Vec<2> b{block.v[1][0][k] - o[0], block.v[1][1][k] - o[1]};
+      const double side_a = u[0] * a[1] - u[1] * a[0];
+      const double side_b = u[0] * b[1] - u[1] * b[0];
+      if (!(side_a >= 0 && side_b <= 0 && side_a > side_b)) continue;
+      const double s = side_a / (side_a - side_b);
+      const double t = (1 - s) * u.dot(a) + s * u.dot(b);
+      if (t > t_min && t < t_max) {
+        t_max = t;
+        facet = block.facet[k];
+      }
+    }
+  }
+};
+
+}  // namespace
+
+template <int D>
+struct Locator<D>::Impl {
+  static constexpr int kEdges = D == 3 ? 3 : 0;  // pseudo-normals that are not of a vertex
+
+  struct Block {
+    double v[D][D][4];  // [vertex][axis][facet]
+    std::int32_t facet[4];
+  };
+
+  std::vector<Vec<D>> points;
+  std::vector<std::array<std::int32_t, D>> facets;
+  std::vector<Vec<D>> normals;                        // [facet] unit
+  std::vector<std::array<Vec<D>, kEdges>> edge_sums;  // [facet][edge opposite to vertex k]
+  std::vector<Vec<D>> vertex_sums;                    // [vertex]
+  std::vector<Block> blocks;
+  Bvh<D> bvh;
+  typename Bvh<D>::Ref root = Bvh<D>::kNothing;
+  std::vector<typename Bvh<D>::Ref> face_roots;
+  double diagonal = 0;
+
+  explicit Impl(const ReferenceSurface<D>& surface)
+      : points(surface.points), facets(surface.facets) {
+    Box<D> all;
+    std::vector<Box<D>> boxes(facets.size());
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      for (const auto v : facets[f]) boxes[f].add(points[v]);
+      all.add(boxes[f]);
+    }
+    if (facets.empty()) return;
+    diagonal = (all.hi - all.lo).norm();
+    bvh = Bvh<D>(Vec<D>(0.5 * (all.lo + all.hi)));
+
+    std::vector<std::int32_t> items(facets.size());
+    std::iota(items.begin(), items.end(), 0);
+    root = bvh.build(boxes, items);
+    if (surface.facet_face.size() == facets.size()) {
+      std::iota(items.begin(), items.end(), 0);
+      std::stable_sort(items.begin(), items.end(), [&](std::int32_t a, std::int32_t b) {
+        return surface.facet_face[a] < surface.facet_face[b];
+      });
+      for (std::size_t first = 0; first < items.size();) {
+        const auto face = surface.facet_face[items[first]];
+        std::size_t last = first;
+        while (last < items.size() && surface.facet_face[items[last]] == face) ++last;
+        if (face >= 0) {
+          face_roots.resize(static_cast<std::size_t>(face) + 1, Bvh<D>::kNothing);
+          face_roots[face] = bvh.build(boxes, std::span(items).subspan(first, last - first));
+        }
+        first = last;
+      }
+    }
+    fill_blocks();
+    sum_normals();
+  }
+
+  std::array<Vec<D>, D> corners(std::int32_t f) const {
+    std::array<Vec<D>, D> p;
+    for (int k = 0; k < D; ++k) p[k] = points[facets[f][k]];
+    return p;
+  }
+
+  void fill_blocks() {
+    const auto& order = bvh.order();
+    blocks.resize(order.size() / 4);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      Block& b = blocks[i / 4];
+      b.facet[i % 4] = order[i];
+      const auto p = corners(order[i]);
+      for (int k = 0; k < D; ++k)
+        for (int a = 0; a < D; ++a) b.v[k][a][i % 4] = p[k][a];
+    }
+  }
+
+  void sum_normals() {
+    normals.resize(facets.size());
+    vertex_sums.assign(points.size(), Vec<D>::Zero());
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      const auto p = corners(static_cast<std::int32_t>(f));
+      normals[f] = facet_normal<D>(p).stableNormalized();
+      for (int k = 0; k < D; ++k) {
+        double weight = 1;
+        if constexpr (D == 3) {
+          const Vec<3> a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
+          weight = std::atan2(a.cross(b).norm(), a.dot(b));
+        }
+        vertex_sums[facets[f][k]] += weight * normals[f];
+      }
+    }
+    if constexpr (D == 3) {
+      struct Side {
+        std::int32_t low, high, facet, opposite;
+      };
+      std::vector<Side> sides;
+      for (std::size_t f = 0; f < facets.size(); ++f)
+        for (int k = 0; k < 3; ++k) {
+          const auto a = facets[f][(k + 1) % 3], b = facets[f][(k + 2) % 3];
+          sides.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(f), k});
+        }
+      std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        return std::tie(a.low, a.high, a.facet) < std::tie(b.low, b.high, b.facet);
+      });
+      edge_sums.resize(facets.size());
+      for (std::size_t i = 0; i < sides.size();) {
+        std::size_t last = i;
+        Vec<3> sum = Vec<3>::Zero();
+        for (; last < sides.size() && sides[last].low == sides[i].low &&
+               sides[last].high == sides[i].high;
+             ++last)
+          sum += normals[sides[last].facet];
+        for (; i < last; ++i) edge_sums[sides[i].facet][sides[i].opposite] = sum;
+      }
+    }
+  }
+
+  /// Foot of x on slot k of a block.
+  Foot<D> foot(const Block& block, int k, const Vec<D>& x) const {
+    std::array<Vec<D>, D> p;
+    for (int i = 0; i < D; ++i)
+      for (int a = 0; a < D; ++a) p[i][a] = block.v[i][a][k];
+    return foot_on_facet(p, x);
+  }
+
+  std::optional<Nearest<D>> nearest(typename Bvh<D>::Ref from, const Vec<D>& x,
+                                    double within) const {
+    double bound2 = within * within;
+    Nearest<D> best;
+    bvh.near(from, x, bound2, [&](std::int32_t b) {
+      for (int k = 0; k < 4; ++k) {
+        const Foot<D> f = foot(blocks[b], k, x);
+        const double d2 = (f.point - x).squaredNorm();
+        if (d2 < bound2 || (best.facet < 0 && d2 <= bound2)) {
+          bound2 = d2;
+          best = {f.point, blocks[b].facet[k], d2};
+        }
+      }
+    });
+    if (best.facet < 0) return std::nullopt;
+    return best;
+  }
+
+  Vec<D> pseudo_normal(std::int32_t facet, unsigned carriers) const {
+    if (carriers == (1u << D) - 1) return normals[facet];
+    for (int k = 0; k < D; ++k)
+      if (carriers == 1u << k) return vertex_sums[facets[facet][k]];
+    if constexpr (D == 3)
+      for (int k = 0; k < 3; ++k)
+        if (carriers == (7u & ~(1u << k))) return edge_sums[facet][k];
+    return normals[facet];
+  }
+};
+
+template <int D>
+Locator<D>::Locator(const ReferenceSurface<D>& surface) : impl_(std::make_unique<Impl>(surface)) {}
+template <int D>
+Locator<D>::~Locator() = default;
+template <int D>
+Locator<D>::Locator(Locator&&) noexcept = default;
+
+template <int D>
+std::optional<Nearest<D>> Locator<D>::nearest(const Vec<D>& x, double within) const {
+  return impl_->nearest(impl_->root, x, within);
+}
+
+template <int D>
+std::optional<Nearest<D>> Locator<D>::nearest_on_face(const Vec<D>& x, std::int32_t face) const {
+  if (face < 0 || static_cast<std::size_t>(face) >= impl_->face_roots.size()) return std::nullopt;
+  return impl_->nearest(impl_->face_roots[face], x, 1e300);
+}
+
+template <int D>
+void Locator<D>::all_within(const Vec<D>& x, double radius, std::vector<Nearest<D>>& found) const {
+  found.clear();
+  double bound2 = radius * radius;
+  impl_->bvh.near(impl_->root, x, bound2, [&](std::int32_t b) {
+    const auto& block = impl_->blocks[b];
+    for (int k = 0; k < 4; ++k) {
+      if (k > 0 && block.facet[k] == block.facet[k - 1]) break;  // the rest repeats the last one
+      const Foot<D> f = impl_->foot(block, k, x);
+      const double d2 = (f.point - x).squaredNorm();
+      if (d2 <= bound2) found.push_back({f.point, block.facet[k], d2});
+    }
+  });
+  std::sort(found.begin(), found.end(), [](const Nearest<D>& a, const Nearest<D>& b) {
+    return std::tie(a.distance2, a.facet) < std::tie(b.distance2, b.facet);
+  });
+}
+
+template <int D>
+std::optional<RayHit> Locator<D>::exit(const Vec<D>& x, const Vec<D>& u, double t_min,
+                                       double t_max) const {
+  RayHit hit;
+  hit.t = t_max;
+  const RayTest<D> test(x, u);
+  impl_->bvh.along(impl_->root, x, u, hit.t,
+                   [&](std::int32_t b) { test(impl_->blocks[b], t_min, hit.t, hit.facet); });
+  if (hit.facet < 0) return std::nullopt;
+  return hit;
+}
+
+template <int D>
+SignedNearest<D> Locator<D>::signed_nearest(const Vec<D>& x) const {
+  SignedNearest<D> s;
+  s.foot = *nearest(x);
+  const Foot<D> f = foot_on_facet(impl_->corners(s.foot.facet), x);
+  s.pseudo_normal = impl_->pseudo_normal(s.foot.facet, f.carriers).normalized();
+  const double d = std::sqrt(s.foot.distance2);
+  s.distance = s.pseudo_normal.dot(x - s.foot.point) < 0 ? -d : d;
+  return s;
+}
+
+template <int D>
+double Locator<D>::signed_distance(const Vec<D>& x) const {
+  return empty() ? std::numeric_limits<double>::infinity() : signed_nearest(x).distance;
+}
+
+template <int D>
+Vec<D> Locator<D>::normal(std::int32_t facet) const {
+  return impl_->normals[facet];
+}
+
+template <int D>
+double Locator<D>::diagonal() const {
+  return impl_->diagonal;
+}
+
+template <int D>
+bool Locator<D>::empty() const {
+  return impl_->facets.empty();
+}
+
+template class Locator<2>;
+template class Locator<3>;
+
+}  // namespace lamella
