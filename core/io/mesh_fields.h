@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "core/metric/metric.h"
+
+namespace lamella {
+
+/// Fields to be written beside a mesh of tetrahedra; a null pointer is left out. Borrowed, never
+/// owned. Node fields are indexed by NodeId, entry 0 is the virtual node.
+struct MeshFields {
+  const MetricField<3>* metric = nullptr;          ///< [node] mm^-2
+  const std::vector<double>* thickness = nullptr;  ///< [node] mm
+  const std::vector<double>* layers = nullptr;     ///< [node] measured; NaN where not
+  const std::vector<double>* quality = nullptr;    ///< [element] c(T), eq. (3.7)
+};
+
+}  // namespace lamella

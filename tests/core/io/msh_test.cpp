@@ -1,0 +1,149 @@
+#include "core/io/msh.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "core/base/atomic_file.h"
+#include "core/io/export_certificate.h"
+#include "tests/support/box_mesh.h"
+#include "tests/support/temporary_folder.h"
+
+namespace lamella {
+namespace {
+
+MetricField<3> some_metric(const SimplexMesh<3>& mesh) {
+  MetricField<3> metric;
+  for (const Vec<3>& x : mesh.points) {
+    const Vec<3> v = x + Vec<3>(0.1, 0.2, 0.3);
+    metric.push_back(v * v.transpose() + 2 * Metric<3>::Identity());
+  }
+  return metric;
+}
+
+class Msh : public testing::TestWithParam<bool> {
+ protected:
+  const test::TemporaryFolder folder;
+  const SimplexMesh<3> mesh = test::box_mesh(2, 3, 2, true);
+  const MetricField<3> metric = some_metric(mesh);
+  const std::vector<double> thickness = std::vector<double>(mesh.points.size(), 1.0 / 3);
+
+  void write() {
+    MeshFields fields;
+    fields.metric = &metric;
+    fields.thickness = &thickness;
+    ASSERT_TRUE(write_msh(mesh, fields, folder / "m.msh", {.binary = GetParam()}).ok());
+  }
+};
+
+TEST_P(Msh, ReadsBackEverythingBitForBit) {
+  write();
+  const Result<MshContent> back = read_msh(folder / "m.msh");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->mesh.points, mesh.points);
+  EXPECT_EQ(back->mesh.bodies, mesh.bodies);
+  EXPECT_EQ(back->mesh.groups, mesh.groups);
+  EXPECT_EQ(back->metric[5], metric[5]);
+  EXPECT_EQ(back->thickness[5], thickness[5]);
+  const ExportCertificate proof =
+      certify("m.msh", "Gmsh MSH 4.1", summarize(mesh), summarize(back->mesh));
+  EXPECT_TRUE(proof.agrees) << proof.finding;
+  EXPECT_DOUBLE_EQ(proof.read_back.bodies[0].measure, 6);
+  EXPECT_DOUBLE_EQ(proof.read_back.groups[1].measure, 6);
+}
+
+TEST_P(Msh, EveryTruncationIsRefused) {
+  write();
+  const std::string bytes = read_file(folder / "m.msh").value();
+  for (const double share : {0.0, 0.001, 0.02, 0.3, 0.6, 0.9, 0.999}) {
+    const auto length = static_cast<std::size_t>(share * static_cast<double>(bytes.size()));
+    ASSERT_TRUE(write_file(folder / "cut.msh", bytes.substr(0, length)).ok());
+    const Result<MshContent> cut = read_msh(folder / "cut.msh");
+    ASSERT_FALSE(cut.ok()) << share;
+    EXPECT_EQ(cut.error().code, Code::bad_input);
+    EXPECT_NE(cut.error().message.find("cut.msh"), std::string::npos);
+  }
+}
+
+TEST_P(Msh, CancelLeavesNothingBehind) {
+  std::stop_source stop;
+  stop.request_stop();
+  const Result<void> result =
+      write_msh(mesh, {}, folder / "m.msh", {.binary = GetParam()}, Progress({}, stop.get_token()));
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, Code::cancelled);
+  EXPECT_TRUE(folder.names().empty());
+}
+
+/// What a command prints, with its exit status.
+std::pair<int, std::string> output_of(const std::string& command) {
+  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
+  std::string text;
+  char buffer[4096];
+  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
+  return {::pclose(pipe), text};
+}
+
+TEST_P(Msh, GmshReadsTheNamesAndTheMetric) {
+  if (output_of("command -v gmsh").first != 0) {
+    // Gmsh is a witness from outside and need not be installed; the round trip above always runs.
+    std::puts("gmsh is not installed: its reading of the file was not tried");
+    return;
+  }
+  write();
+  ASSERT_TRUE(write_file(folder / "names.geo",
+                         "Merge \"m.msh\";\n"
+                         "Printf(Str(Physical Volume{1}));\n"
+                         "Printf(Str(Physical Volume{2}));\n"
+                         "Printf(Str(Physical Surface{3}));\n"
+                         "Printf(Str(Physical Surface{4}));\n"
+                         "Printf(\"views %g\", PostProcessing.NbViews);\n")
+                  .ok());
+  const auto [status, text] =
+      output_of("cd " + folder.path().string() + " && gmsh -parse_and_exit names.geo");
+  EXPECT_EQ(status, 0);
+  for (const std::string name : {"\nleft\n", "\nright\n", "\nwalls\n", "\ngate\n", "views 2"})
+    EXPECT_NE(text.find(name), std::string::npos) << text;
+  EXPECT_EQ(text.find("Error"), std::string::npos) << text;
+  EXPECT_EQ(text.find("Warning"), std::string::npos) << text;
+}
+
+INSTANTIATE_TEST_SUITE_P(TextAndBinary, Msh, testing::Bool(),
+                         [](const auto& p) { return p.param ? "Binary" : "Text"; });
+
+TEST(MshRead, OtherVersionsAreRefusedWithAHint) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_file(folder / "old.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n").ok());
+  const Result<MshContent> old = read_msh(folder / "old.msh");
+  ASSERT_FALSE(old.ok());
+  EXPECT_NE(old.error().hint.find("msh41"), std::string::npos);
+}
+
+TEST(MshRead, NodesNumberedWithGapsAreRenumberedInOrder) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_file(folder / "gaps.msh",
+                         "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+                         "$Nodes\n1 4 7 40\n3 9 0 4\n40\n7\n10\n20\n"
+                         "0 0 1\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n"
+                         "$Elements\n1 1 1 1\n3 9 4 1\n1 7 10 20 40\n$EndElements\n")
+                  .ok());
+  const Result<MshContent> back = read_msh(folder / "gaps.msh");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->mesh.elements.at(0), (SimplexMesh<3>::Element{1, 2, 3, 4}));
+  EXPECT_DOUBLE_EQ(signed_measure<3>(back->mesh.corners(back->mesh.elements[0])), 1.0 / 6);
+  EXPECT_EQ(back->mesh.bodies, std::vector<std::string>{"body 9"});
+}
+
+TEST(Certificate, TellsWhatDiffers) {
+  const SimplexMesh<3> mesh = test::box_mesh(2, 2, 1, true);
+  SimplexMesh<3> other = mesh;
+  other.bodies[1] = "wrong";
+  other.points[1] += Vec<3>(0, 0, -1e-6);
+  const ExportCertificate proof = certify("f", "x", summarize(mesh), summarize(other));
+  EXPECT_FALSE(proof.agrees);
+  EXPECT_NE(proof.finding.find("\"right\" reads back as \"wrong\""), std::string::npos);
+  EXPECT_GT(proof.worst_difference, 1e-8);
+}
+
+}  // namespace
+}  // namespace lamella
