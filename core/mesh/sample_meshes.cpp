@@ -89,7 +89,8 @@ SimplexMesh<D> equilateral_simplex(double edge) {
   const Vec<D> center = edges.rowwise().sum() / (D + 1);
   mesh.points.push_back(-center);
   for (int k = 0; k < D; ++k) mesh.points.push_back(edges.col(k) - center);
-  std::iota(mesh.elements.emplace_back().begin(), mesh.elements.back().end(), 1);
+  auto& element = mesh.elements.emplace_back();
+  std::iota(element.begin(), element.end(), 1);
   mesh.element_body = {0};
   rebuild_facets(mesh);
   return mesh;
