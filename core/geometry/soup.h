@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/geometry/surface.h"
 
@@ -11,14 +12,20 @@ struct SoupParams {
 };
 
 /// Turns triangles without connectivity (an STL) into a watertight, outward, manifold surface
-/// segmented into patches between feature edges. Exact duplicates of points merge; cracks are welded
-/// only as far as needed; wrongly wound facets and inside-out shells are turned.
-/// Errors: bad_input, with counts and a place: open edges left, non-manifold edges, duplicates,
-/// no volume.
+/// segmented into patches between feature edges. Exact duplicates of points merge; cracks are
+/// welded only as far as needed; wrongly wound facets and inside-out shells are turned. Errors:
+/// bad_input, with counts and a place: open edges left, non-manifold edges, duplicates, no volume.
 /// `notes` (may be null) gets a sentence for everything that was repaired.
 Result<ReferenceSurface<3>> surface_from_soup(const std::vector<std::array<Vec<3>, 3>>& soup,
                                               const SoupParams& params = {},
-                                              std::vector<std::string>* notes = nullptr);
+                                              std::vector<std::string>* notes = nullptr,
+                                              const Progress& progress = {});
+
+/// The same, one surface an outer shell with the voids directly inside it; a shell within a void is
+/// a body of its own. Largest volume first.
+Result<std::vector<ReferenceSurface<3>>> surfaces_from_soup(
+    const std::vector<std::array<Vec<3>, 3>>& soup, const SoupParams& params = {},
+    std::vector<std::string>* notes = nullptr, const Progress& progress = {});
 
 /// Volume enclosed by a closed surface, eq. (1.23), mm^D.
 template <int D>
@@ -28,7 +35,9 @@ double enclosed_measure(const ReferenceSurface<D>& surface);
 template <int D>
 Result<void> check_closed(const ReferenceSurface<D>& surface);
 
-/// Feature edges and corners where facets meet at more than `angle` radians or different faces meet.
+/// Feature edges where facets meet at more than `angle` radians; `facet_face` and `faces` become
+/// the patches between them, and `corners` the vertices where features end, branch or kink by more
+/// than 0.6 radians.
 void find_features(ReferenceSurface<3>& surface, double angle);
 
 }  // namespace lamella
