@@ -1,0 +1,7 @@
+#include "core/base/version.h"
+
+namespace lamella {
+
+std::string version() { return LAMELLA_VERSION; }
+
+}  // namespace lamella

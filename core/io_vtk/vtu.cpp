@@ -1,0 +1,282 @@
+#include "core/io_vtk/vtu.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIdList.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/atomic_file.h"
+#include "core/base/version.h"
+
+namespace lamella {
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+/// Row and column of the six components, in the order VTK has for symmetric tensors.
+constexpr std::array<std::array<int, 2>, 6> kTensor = {
+    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
+
+/// VTK prints its complaints; we return ours. Silent while it lives.
+class Quiet {
+ public:
+  Quiet() : before_(vtkObject::GetGlobalWarningDisplay()) { vtkObject::GlobalWarningDisplayOff(); }
+  ~Quiet() { vtkObject::SetGlobalWarningDisplay(before_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  int before_;
+};
+
+void add_strings(vtkFieldData* data, const char* name, const std::vector<std::string>& values) {
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  for (const std::string& value : values) array->InsertNextValue(value);
+  data->AddArray(array);
+}
+
+void add_node_scalar(vtkUnstructuredGrid* grid, const char* name,
+                     const std::vector<double>* values) {
+  if (!values) return;
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values->size()) - 1);
+  for (std::size_t v = 1; v < values->size(); ++v)
+    array->SetValue(static_cast<vtkIdType>(v - 1), (*values)[v]);
+  grid->GetPointData()->AddArray(array);
+}
+
+void add_metric(vtkUnstructuredGrid* grid, const MetricField<3>* metric) {
+  if (!metric) return;
+  vtkNew<vtkDoubleArray> array;
+  array->SetName("metric");
+  array->SetNumberOfComponents(6);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(metric->size()) - 1);
+  for (std::size_t v = 1; v < metric->size(); ++v)
+    for (int c = 0; c < 6; ++c)
+      array->SetComponent(static_cast<vtkIdType>(v - 1), c,
+                          (*metric)[v](kTensor[c][0], kTensor[c][1]));
+  grid->GetPointData()->AddArray(array);
+  grid->GetPointData()->SetActiveTensors("metric");
+}
+
+void fill(vtkUnstructuredGrid* grid, const SimplexMesh<3>& mesh, const MeshFields& fields) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.node_count()));
+  for (std::size_t v = 1; v < mesh.points.size(); ++v)
+    points->SetPoint(static_cast<vtkIdType>(v - 1), mesh.points[v].data());
+  grid->SetPoints(points);
+
+  const auto tets = static_cast<vtkIdType>(mesh.elements.size());
+  const auto cells = tets + static_cast<vtkIdType>(mesh.facets.size());
+  vtkNew<vtkCellArray> connectivity;
+  connectivity->AllocateExact(cells, 4 * tets + 3 * (cells - tets));
+  vtkNew<vtkUnsignedCharArray> types;
+  types->SetNumberOfValues(cells);
+  const auto add = [&](const auto& simplex, unsigned char type) {
+    std::array<vtkIdType, 4> ids{};
+    for (std::size_t k = 0; k < simplex.size(); ++k) ids[k] = simplex[k] - 1;
+    types->SetValue(connectivity->GetNumberOfCells(), type);
+    connectivity->InsertNextCell(static_cast<vtkIdType>(simplex.size()), ids.data());
+  };
+  for (const auto& element : mesh.elements) add(element, VTK_TETRA);
+  for (const auto& facet : mesh.facets) add(facet, VTK_TRIANGLE);
+  grid->SetCells(types, connectivity);
+
+  const auto add_ids = [&](const char* name, const std::vector<std::int32_t>* of_element,
+                           const std::vector<std::int32_t>* of_facet) {
+    vtkNew<vtkIntArray> array;
+    array->SetName(name);
+    array->SetNumberOfValues(cells);
+    array->FillValue(-1);
+    for (vtkIdType c = 0; of_element && c < tets; ++c) array->SetValue(c, (*of_element)[c]);
+    for (vtkIdType c = tets; of_facet && c < cells; ++c) array->SetValue(c, (*of_facet)[c - tets]);
+    grid->GetCellData()->AddArray(array);
+  };
+  add_ids("body", &mesh.element_body, nullptr);
+  add_ids("group", nullptr, &mesh.facet_group);
+  add_ids("face", nullptr, &mesh.facet_face);
+  if (fields.quality) {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName("quality");
+    array->SetNumberOfValues(cells);
+    for (vtkIdType c = 0; c < cells; ++c)
+      array->SetValue(c, c < tets ? (*fields.quality)[c] : kNan);
+    grid->GetCellData()->AddArray(array);
+  }
+  add_node_scalar(grid, "thickness", fields.thickness);
+  add_node_scalar(grid, "layers", fields.layers);
+  add_metric(grid, fields.metric);
+
+  add_strings(grid->GetFieldData(), "body_names", mesh.bodies);
+  add_strings(grid->GetFieldData(), "group_names", mesh.groups);
+  add_strings(grid->GetFieldData(), "unit", {"mm"});
+  add_strings(grid->GetFieldData(), "generator", {"Lamella " + version()});
+}
+
+std::vector<std::string> strings_of(vtkFieldData* data, const char* name) {
+  std::vector<std::string> values;
+  if (auto* array = vtkStringArray::SafeDownCast(data->GetAbstractArray(name)))
+    for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i) values.push_back(array->GetValue(i));
+  return values;
+}
+
+std::vector<double> node_scalar_of(vtkUnstructuredGrid* grid, const char* name) {
+  vtkDataArray* array = grid->GetPointData()->GetArray(name);
+  if (!array || array->GetNumberOfComponents() != 1) return {};
+  std::vector<double> values(static_cast<std::size_t>(grid->GetNumberOfPoints()) + 1, 0);
+  for (vtkIdType v = 0; v < grid->GetNumberOfPoints(); ++v)
+    values[static_cast<std::size_t>(v) + 1] = array->GetComponent(v, 0);
+  return values;
+}
+
+/// Value of a cell array of ids; 0 where there is none. `names` grows to hold every id.
+std::int32_t id_of(vtkDataArray* array, vtkIdType cell, std::vector<std::string>* names) {
+  const auto id =
+      array ? static_cast<std::int32_t>(std::max(0.0, array->GetComponent(cell, 0))) : 0;
+  while (names && names->size() <= static_cast<std::size_t>(id) && names->size() < 100000)
+    names->push_back("number " + std::to_string(names->size()));
+  return id;
+}
+
+void take(vtkUnstructuredGrid* grid, VtuContent& out) {
+  SimplexMesh<3>& mesh = out.mesh;
+  for (vtkIdType v = 0; v < grid->GetNumberOfPoints(); ++v) {
+    Vec<3> x;
+    grid->GetPoint(v, x.data());
+    mesh.points.push_back(x);
+  }
+  mesh.bodies = strings_of(grid->GetFieldData(), "body_names");
+  mesh.groups = strings_of(grid->GetFieldData(), "group_names");
+  vtkDataArray* body = grid->GetCellData()->GetArray("body");
+  vtkDataArray* group = grid->GetCellData()->GetArray("group");
+  vtkDataArray* face = grid->GetCellData()->GetArray("face");
+  vtkDataArray* quality = grid->GetCellData()->GetArray("quality");
+  vtkNew<vtkIdList> nodes;
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
+    const int type = grid->GetCellType(c);
+    if (type != VTK_TETRA && type != VTK_TRIANGLE) continue;
+    grid->GetCellPoints(c, nodes);
+    std::array<NodeId, 4> v{};
+    for (vtkIdType k = 0; k < nodes->GetNumberOfIds(); ++k)
+      v[k] = static_cast<NodeId>(nodes->GetId(k)) + 1;
+    if (type == VTK_TETRA) {
+      mesh.elements.push_back(v);
+      mesh.element_body.push_back(id_of(body, c, &mesh.bodies));
+      if (quality) out.quality.push_back(quality->GetComponent(c, 0));
+    } else {
+      mesh.facets.push_back({v[0], v[1], v[2]});
+      mesh.facet_group.push_back(id_of(group, c, &mesh.groups));
+      mesh.facet_face.push_back(id_of(face, c, nullptr));
+    }
+  }
+  out.thickness = node_scalar_of(grid, "thickness");
+  out.layers = node_scalar_of(grid, "layers");
+  vtkDataArray* metric = grid->GetPointData()->GetArray("metric");
+  if (metric && metric->GetNumberOfComponents() == 6) {
+    out.metric.assign(mesh.points.size(), Metric<3>::Identity());
+    for (vtkIdType v = 0; v < grid->GetNumberOfPoints(); ++v)
+      for (int c = 0; c < 6; ++c) {
+        const auto [i, j] = kTensor[c];
+        Metric<3>& m = out.metric[static_cast<std::size_t>(v) + 1];
+        m(i, j) = m(j, i) = metric->GetComponent(v, c);
+      }
+  }
+}
+
+/// False when a cell refers to a point that is not there, or an array has a wrong length.
+bool consistent(vtkUnstructuredGrid* grid) {
+  if (!grid->GetCells()) return grid->GetNumberOfCells() == 0;
+  vtkDataArray* ids = grid->GetCells()->GetConnectivityArray();
+  for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i) {
+    const double id = ids->GetComponent(i, 0);
+    if (id < 0 || id >= static_cast<double>(grid->GetNumberOfPoints())) return false;
+  }
+  const auto lengths = [](vtkFieldData* data, vtkIdType n) {
+    for (int a = 0; a < data->GetNumberOfArrays(); ++a)
+      if (data->GetAbstractArray(a)->GetNumberOfTuples() != n) return false;
+    return true;
+  };
+  return lengths(grid->GetPointData(), grid->GetNumberOfPoints()) &&
+         lengths(grid->GetCellData(), grid->GetNumberOfCells());
+}
+
+}  // namespace
+
+Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
+                       const std::filesystem::path& file, const Progress& progress) {
+  if (progress.cancelled()) return cancelled_error();
+  Result<AtomicFile> target = AtomicFile::create(file);
+  if (!target) return target.error();
+  vtkNew<vtkUnstructuredGrid> grid;
+  fill(grid, mesh, fields);
+  progress.report(0.3);
+
+  const Quiet quiet;
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetFileName(target->temporary().c_str());
+  writer->SetInputData(grid);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  vtkNew<vtkCallbackCommand> watch;
+  watch->SetClientData(const_cast<Progress*>(&progress));
+  watch->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    const auto& p = *static_cast<const Progress*>(data);
+    auto* w = static_cast<vtkXMLUnstructuredGridWriter*>(caller);
+    p.report(0.3 + 0.7 * w->GetProgress());
+    if (p.cancelled()) w->SetAbortExecute(1);
+  });
+  writer->AddObserver(vtkCommand::ProgressEvent, watch);
+  const bool written = writer->Write() == 1;
+  if (progress.cancelled()) return cancelled_error();
+  if (!written)
+    return Error{Code::io, "\"" + file.string() + "\": writing failed.",
+                 "Check the space on the disk."};
+  return target->commit();
+}
+
+Result<VtuContent> read_vtu(const std::filesystem::path& file) {
+  // VTK's parser takes anything it is given; what is no VTU file at all is better told before.
+  Result<std::string> bytes = read_file(file);
+  if (!bytes) return bytes.error();
+  const auto refuse = [&](const std::string& finding, const std::string& hint) {
+    return Error{Code::bad_input, "\"" + file.string() + "\": " + finding + ".", hint};
+  };
+  const std::string_view head = std::string_view(*bytes).substr(0, 4096);
+  if (head.find("<VTKFile") == head.npos || head.find("UnstructuredGrid") == head.npos)
+    return refuse("not a VTU file", "Give a VTK XML unstructured grid.");
+  if (bytes->rfind("</VTKFile>") == std::string::npos)
+    return refuse("the file ends too early", "It may be truncated; write or copy it again.");
+
+  const Quiet quiet;
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  if (reader->GetErrorCode() != 0 || !grid || !consistent(grid))
+    return refuse("the file is damaged", "Write or copy it again.");
+  VtuContent content;
+  take(grid, content);
+  if (content.mesh.elements.empty())
+    return refuse("it holds no tetrahedra", "Only volume meshes of tetrahedra can be used.");
+  return content;
+}
+
+}  // namespace lamella
