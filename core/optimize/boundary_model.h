@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/geometry/locator.h"
+#include "core/mesh/simplex_mesh.h"
+
+namespace lamella {
+
+/// What the optimizer must know of the boundary: which borders between facet tags are hard, which
+/// nodes never move, and where the original surface lies.
+///
+/// A tag is a (group, CAD face, patch) triple. A border between two tags is hard where the groups
+/// differ or a feature edge of the reference surface runs between the faces; soft borders (tangent
+/// CAD faces) may drift with the mesh, their facets are tagged again from the nearest face.
+template <int D>
+class BoundaryModel {
+ public:
+  /// `surface` null: the boundary of `mesh` itself is the reference, with features where facets
+  /// meet at more than `feature_angle` radians. `tolerance` is the chord tolerance in mm.
+  BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurface<D>* surface, double tolerance,
+                double feature_angle);
+  ~BoundaryModel();
+
+  struct Tag {
+    std::int32_t group = 0;
+    std::int32_t face = 0;   ///< CAD face
+    std::int32_t patch = 0;  ///< the CAD face, or without one the part of it between features
+  };
+
+  const Tag& tag(std::int32_t t) const { return tags_[t]; }
+  std::int32_t tag_of_facet(std::size_t f) const { return facet_tag_[f]; }
+  bool hard(std::int32_t a, std::int32_t b) const;
+  bool fixed(NodeId n) const { return static_cast<std::size_t>(n) < fixed_.size() && fixed_[n]; }
+  double tolerance() const { return tolerance_; }
+
+  /// Nearest point of the surface; nothing when there is none within `within` mm.
+  std::optional<Nearest<D>> nearest(const Vec<D>& x, double within) const;
+  /// Unit outward normal of a facet of the reference surface.
+  const Vec<D>& normal(std::int32_t facet) const { return normals_[facet]; }
+  /// Nearest point of the feature edges within `within` mm.
+  std::optional<Vec<D>> nearest_feature(const Vec<D>& x, double within) const;
+  /// Tag of the same group as `t` on the CAD face of reference facet `facet`; `t` when there is
+  /// none.
+  std::int32_t tag_on(std::int32_t t, std::int32_t facet) const;
+  /// Whether curved boundaries can be followed; without a surface only flat changes are allowed.
+  bool has_surface() const { return locator_ != nullptr; }
+
+ private:
+  struct Features;
+  using Search = Locator<D == 4 ? 3 : D>;  // never made for D = 4
+  double tolerance_;
+  std::vector<Tag> tags_;
+  std::vector<std::int32_t> facet_tag_;
+  std::vector<char> fixed_;
+  std::vector<std::uint64_t> hard_pairs_;  // sorted (face, face)
+  std::vector<Vec<D>> normals_;
+  std::vector<std::int32_t> facet_face_;
+  std::unique_ptr<Search> locator_;
+  std::unique_ptr<Features> features_;
+};
+
+}  // namespace lamella
