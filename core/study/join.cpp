@@ -1,0 +1,78 @@
+#include "core/study/join.h"
+
+#include <algorithm>
+
+namespace lamella {
+
+std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodies,
+                                      const std::vector<std::string>& names) {
+  auto joined = std::make_shared<MeshState>();
+  SimplexMesh<3>& mesh = joined->mesh;
+  mesh.bodies = names;
+  mesh.groups.clear();
+  joined->metric.push_back(Metric<3>::Identity());
+  joined->thickness.push_back(0);
+  joined->layers.push_back(0);
+  const auto append = [](auto& to, const auto& from, std::size_t skip) {
+    to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(skip), from.end());
+  };
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const MeshState& body = *bodies[b];
+    const auto shift = static_cast<NodeId>(mesh.points.size()) - 1;
+    const auto id = static_cast<std::int32_t>(b);
+    append(mesh.points, body.mesh.points, 1);
+    for (auto element : body.mesh.elements) {
+      for (NodeId& v : element) v += shift;
+      mesh.elements.push_back(element);
+    }
+    for (auto facet : body.mesh.facets) {
+      for (NodeId& v : facet) v += shift;
+      mesh.facets.push_back(facet);
+    }
+    mesh.element_body.resize(mesh.elements.size(), id);
+    mesh.facet_group.resize(mesh.facets.size(), id);
+    append(mesh.facet_face, body.mesh.facet_face, 0);
+    mesh.groups.push_back(bodies.size() == 1 ? "walls" : names[b] + " walls");
+    append(joined->metric, body.metric, 1);
+    append(joined->thickness, body.thickness, 1);
+    append(joined->layers, body.layers, 1);
+    append(joined->quality, body.quality, 0);
+  }
+  return joined;
+}
+
+IterationRecord join(const std::vector<const IterationRecord*>& records) {
+  if (records.size() == 1) return *records.front();
+  IterationRecord all;
+  all.quality_min = 1;
+  double elements = 0, places = 0;
+  bool first = true;
+  for (const IterationRecord* r : records) {
+    const auto e = static_cast<double>(r->elements), p = static_cast<double>(r->layers.places);
+    all.iteration = std::max(all.iteration, r->iteration);
+    all.nodes += r->nodes;
+    all.elements += r->elements;
+    all.volume += r->volume;
+    all.quality_min = std::min(all.quality_min, r->quality_min);
+    all.quality_mean += e * r->quality_mean;
+    all.conformity += e * r->conformity;
+    all.unit_edges += e * r->unit_edges;
+    all.seconds += r->seconds;
+    elements += e;
+    if (r->layers.places == 0) continue;
+    all.layers.places += r->layers.places;
+    all.layers.mean += p * r->layers.mean;
+    all.layers.share_reached += p * r->layers.share_reached;
+    all.layers.p5 = first ? r->layers.p5 : std::min(all.layers.p5, r->layers.p5);
+    all.layers.p50 = first ? r->layers.p50 : std::min(all.layers.p50, r->layers.p50);
+    places += p;
+    first = false;
+  }
+  for (double* mean : {&all.quality_mean, &all.conformity, &all.unit_edges})
+    *mean = elements > 0 ? *mean / elements : 0;
+  for (double* mean : {&all.layers.mean, &all.layers.share_reached})
+    *mean = places > 0 ? *mean / places : 0;
+  return all;
+}
+
+}  // namespace lamella

@@ -1,0 +1,131 @@
+#include "core/study/measure.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+
+#include "core/geometry/locator.h"
+#include "core/mesh/adjacency.h"
+#include "core/mesh/boundary.h"
+#include "core/mesh/quality.h"
+
+namespace lamella {
+
+Result<IterationRecord> measure(MeshState& state, const Progress& progress) {
+  const SimplexMesh<3>& mesh = state.mesh;
+  IterationRecord record;
+  record.nodes = mesh.node_count();
+  record.elements = mesh.element_count();
+  state.quality = element_qualities<3>(mesh, state.metric);
+  if (progress.cancelled()) return cancelled_error();
+  progress.report(0.3);
+  record.quality_min = state.quality.empty() ? 0 : 1;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    if (e % 65536 == 0 && progress.cancelled()) return cancelled_error();
+    const auto corners = mesh.corners(mesh.elements[e]);
+    record.volume += signed_measure<3>(corners);
+    record.quality_min = std::min(record.quality_min, state.quality[e]);
+    record.quality_mean += state.quality[e];
+    record.conformity +=
+        conformity<3>(corners, mean_metric<3>(state.metric, mesh.elements[e])).invariant;
+  }
+  const auto elements = static_cast<double>(std::max<std::size_t>(1, mesh.elements.size()));
+  record.quality_mean /= elements;
+  record.conformity /= elements;
+  progress.report(0.7);
+
+  const auto edges = unique_edges<3>(mesh.elements, mesh.points.size());
+  if (progress.cancelled()) return cancelled_error();
+  std::size_t unit = 0;
+  for (const auto& [a, b] : edges)
+    unit += is_unit_length(
+        edge_length<3>(Vec<3>(mesh.points[b] - mesh.points[a]), state.metric[a], state.metric[b]));
+  record.unit_edges =
+      static_cast<double>(unit) / static_cast<double>(std::max<std::size_t>(1, edges.size()));
+  progress.report(1);
+  return record;
+}
+
+Result<double> boundary_distance(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
+                                 const Progress& progress) {
+  // A lattice of order 4: vertices, quarters of the edges, and three points inside.
+  constexpr int kOrder = 4;
+  const Locator<3> locator(surface);
+  const double worst = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, mesh.facets.size(), 256), 0.0,
+      [&](const tbb::blocked_range<std::size_t>& range, double largest) {
+        for (std::size_t f = range.begin(); f != range.end() && !progress.cancelled(); ++f) {
+          const auto p = mesh.corners(mesh.facets[f]);
+          for (int i = 0; i <= kOrder; ++i)
+            for (int j = 0; i + j <= kOrder; ++j) {
+              const Vec<3> x = (i * p[0] + j * p[1] + (kOrder - i - j) * p[2]) / kOrder;
+              if (const auto near = locator.nearest(x))
+                largest = std::max(largest, near->distance2);
+            }
+        }
+        return largest;
+      },
+      [](double a, double b) { return std::max(a, b); });
+  if (progress.cancelled()) return cancelled_error();
+  return std::sqrt(worst);
+}
+
+SimplexMesh<3> extract_body(const SimplexMesh<3>& mesh, std::int32_t body,
+                            std::vector<NodeId>* old_id) {
+  SimplexMesh<3> part;
+  part.points = mesh.points;
+  part.bodies = {mesh.bodies.at(static_cast<std::size_t>(body))};
+  part.groups = mesh.groups;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    if (mesh.element_body[e] == body) part.elements.push_back(mesh.elements[e]);
+  part.element_body.assign(part.elements.size(), 0);
+  // Facets of other bodies are no boundary of these elements: rebuilding drops them, and adds those
+  // towards a neighbor body.
+  part.facets = mesh.facets;
+  part.facet_group = mesh.facet_group;
+  part.facet_face = mesh.facet_face;
+  rebuild_facets<3>(part);
+  const std::vector<NodeId> new_id = compact_nodes<3>(part);
+  if (old_id) {
+    old_id->assign(part.points.size(), 0);
+    for (std::size_t v = 1; v < new_id.size(); ++v)
+      if (new_id[v] > 0) (*old_id)[static_cast<std::size_t>(new_id[v])] = static_cast<NodeId>(v);
+  }
+  return part;
+}
+
+ReferenceSurface<3> boundary_surface(const SimplexMesh<3>& mesh, std::int32_t body) {
+  const SimplexMesh<3> part = extract_body(mesh, body);
+  ReferenceSurface<3> surface;
+  std::vector<std::int32_t> vertex(part.points.size(), -1);
+  std::int32_t faces = 1;
+  for (std::size_t f = 0; f < part.facets.size(); ++f) {
+    std::array<std::int32_t, 3> facet{};
+    for (int k = 0; k < 3; ++k) {
+      std::int32_t& v = vertex[part.facets[f][k]];
+      if (v < 0) {
+        v = static_cast<std::int32_t>(surface.points.size());
+        surface.points.push_back(part.points[part.facets[f][k]]);
+      }
+      facet[k] = v;
+    }
+    surface.facets.push_back(facet);
+    surface.facet_face.push_back(std::max(0, part.facet_face[f]));
+    faces = std::max(faces, surface.facet_face.back() + 1);
+  }
+  surface.faces.resize(static_cast<std::size_t>(faces));
+  return surface;
+}
+
+double box_diagonal(const std::vector<Vec<3>>& points, std::size_t from) {
+  if (points.size() <= from) return 0;
+  Vec<3> low = points[from], high = low;
+  for (std::size_t i = from; i < points.size(); ++i) {
+    low = low.cwiseMin(points[i]);
+    high = high.cwiseMax(points[i]);
+  }
+  return (high - low).norm();
+}
+
+}  // namespace lamella

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "core/io/export_certificate.h"
+#include "core/mesh/validate.h"
+#include "core/study/run.h"
+#include "core/study/svg_plot.h"
+
+namespace lamella {
+
+/// A file that went in, named by its content.
+struct InputFile {
+  std::string path;
+  std::uintmax_t bytes = 0;
+  std::string sha256;
+};
+
+/// Errors: io.
+Result<InputFile> describe_input(const std::filesystem::path& file);
+
+/// What a report tells besides the outcome itself.
+struct ReportContext {
+  std::vector<InputFile> inputs;
+  std::vector<ExportCertificate> exports;
+  std::string command;      ///< how to reproduce the mesh
+  std::string section_png;  ///< bytes of a PNG of the mesh; empty: no picture
+};
+
+/// Everything a report says, measured on the mesh of the outcome.
+struct Report {
+  Study study;
+  Outcome outcome;
+  ReportContext context;
+  MeshReport validity;
+  IterationRecord final_record;  ///< of the mesh that was kept
+  double aspect_max = 0;         ///< Euclidean, sqrt(1.5) Lmax / hmin
+  double aspect_over_50 = 0;     ///< share of elements, 0..1
+  Histogram quality{0, 1, 25};
+  Histogram layers{0, 1, 1};  ///< of the nodes where layers were measured
+};
+
+/// Errors: cancelled.
+Result<Report> build_report(const Study& study, const Outcome& outcome,
+                            const ReportContext& context, const Progress& progress = {});
+
+/// The report for programs.
+std::string report_json(const Report& report);
+/// The report for people: one page of HTML that needs no other file.
+std::string report_html(const Report& report);
+
+/// Writes STEM.json and STEM.html. Errors: io.
+Result<void> write_report(const Report& report, const std::filesystem::path& stem);
+
+/// Sidecar of a mesh file for what its format has no place for: unit, version, names of bodies and
+/// groups with their references (from 1), what was asked of each body, hashes of the inputs.
+Result<void> write_sidecar(const Study& study, const Outcome& outcome,
+                           const std::vector<InputFile>& inputs, const std::filesystem::path& file);
+
+/// One line of JSON, without line end.
+std::string record_json(const IterationRecord& record);
+
+}  // namespace lamella

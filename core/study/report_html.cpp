@@ -1,0 +1,283 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/version.h"
+#include "core/study/report.h"
+
+namespace lamella {
+
+namespace {
+
+const char* const kStyle = R"(
+:root{--ink:#1d2733;--soft:#5b6875;--line:#dfe4e9;--accent:#0f6b8f;--good:#2c7a4b;--warn:#b45f06;--bad:#b3261e}
+*{box-sizing:border-box}
+body{margin:0;background:#eef1f4;color:var(--ink);font:14px/1.45 "Inter","Segoe UI","Noto Sans","DejaVu Sans",sans-serif}
+main{max-width:1020px;margin:24px auto;background:#fff;padding:34px 40px 28px;border-radius:6px;box-shadow:0 1px 4px #0002}
+header{display:flex;justify-content:space-between;align-items:baseline;border-bottom:2px solid var(--ink);padding-bottom:10px}
+h1{font-size:24px;margin:0;font-weight:650}
+h2{font-size:13px;margin:26px 0 8px;text-transform:uppercase;letter-spacing:.06em;color:var(--accent)}
+header span{color:var(--soft)}
+.badges{margin:14px 0 4px}
+.badge{display:inline-block;padding:3px 10px;border-radius:11px;font-size:12.5px;font-weight:600;margin:0 6px 6px 0;border:1px solid}
+.good{color:var(--good);background:#e9f5ee}.warn{color:var(--warn);background:#fdf3e4}.bad{color:var(--bad);background:#fdeceb}
+.tiles{display:grid;grid-template-columns:repeat(6,1fr);gap:10px;margin-top:10px}
+.tile{border:1px solid var(--line);border-radius:5px;padding:10px 12px}
+.tile b{display:block;font-size:20px;font-weight:650;white-space:nowrap}
+.tile span{color:var(--soft);font-size:12px}
+table{border-collapse:collapse;width:100%}
+th,td{text-align:right;padding:5px 8px;border-bottom:1px solid var(--line);font-variant-numeric:tabular-nums;vertical-align:top}
+th{font-size:12px;color:var(--soft);font-weight:600}
+td:first-child,th:first-child,td.left,th.left{text-align:left}
+.plots{display:grid;grid-template-columns:1fr 1fr;gap:8px 28px}
+figure{margin:0}
+figcaption{font-weight:600;margin-bottom:2px}
+figure.wide{grid-column:1/3}
+figure img{max-width:100%;max-height:420px;display:block;margin:auto}
+svg{width:100%;height:auto;font:11px "Inter","Segoe UI","Noto Sans","DejaVu Sans",sans-serif;fill:var(--soft)}
+svg .grid{stroke:#e6eaee}svg .axis{stroke:var(--ink)}svg .bar{fill:var(--accent)}
+svg .mark{stroke:var(--bad);stroke-dasharray:5 4}svg .note{fill:var(--bad)}svg .label{fill:var(--ink)}
+.two{display:grid;grid-template-columns:1fr 1fr;gap:0 32px}
+code,pre{font:12px "JetBrains Mono","DejaVu Sans Mono",monospace}
+pre{background:#f4f6f8;border:1px solid var(--line);border-radius:4px;padding:9px 12px;white-space:pre-wrap;word-break:break-all;margin:0}
+.hash{word-break:break-all;color:var(--soft)}
+ul{margin:4px 0;padding-left:18px}
+footer{margin-top:26px;border-top:1px solid var(--line);padding-top:8px;color:var(--soft);font-size:12px}
+@media print{body{background:#fff}main{box-shadow:none;margin:0;max-width:none;padding:0}h2{break-after:avoid}figure,tr{break-inside:avoid}}
+@media(max-width:760px){.tiles{grid-template-columns:repeat(2,1fr)}.plots,.two{grid-template-columns:1fr}figure.wide{grid-column:1}main{padding:18px}}
+)";
+
+std::string cell(const std::string& text, bool left = false) {
+  return (left ? "<td class=\"left\">" : "<td>") + text + "</td>";
+}
+
+std::string row(const std::string& name, const std::string& value) {
+  return "<tr><td>" + escaped(name) + "</td><td>" + value + "</td></tr>";
+}
+
+std::string percent(double share, int digits = 3) {
+  return short_number(100 * share, digits) + " %";
+}
+
+/// Signed relative difference of the mesh volume to the CAD's, in percent.
+std::string difference(double mesh, double cad) {
+  if (!(cad > 0)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%+.3f %%", 100 * (mesh - cad) / cad);
+  return text;
+}
+
+std::string fixed(double value, int decimals) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+std::string badge(const char* kind, const std::string& text) {
+  return std::string("<span class=\"badge ") + kind + "\">" + escaped(text) + "</span>";
+}
+
+std::string tile(const std::string& value, const std::string& name) {
+  return "<div class=\"tile\"><b>" + value + "</b><span>" + name + "</span></div>";
+}
+
+std::string base64(const std::string& bytes) {
+  static const char* const digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
+  }
+  return out;
+}
+
+std::string layers_text(const LayerStats& layers, double value) {
+  return layers.places == 0 ? "-" : fixed(value, 2);
+}
+
+std::string verdict(const Report& r) {
+  std::string html = "<div class=\"badges\">";
+  const bool valid = r.validity.valid();
+  html += valid ? badge("good", "Valid mesh: every face in one or two elements, none inverted")
+                : badge("bad", "Invalid mesh: " + r.validity.first_finding);
+  if (r.outcome.cancelled)
+    html += badge("warn", "Cancelled: best mesh so far");
+  else
+    html += r.outcome.converged ? badge("good", "Converged") : badge("warn", "Not converged");
+  double worst_volume = 0;
+  bool near = true, layers = true;
+  for (const BodyOutcome& b : r.outcome.bodies) {
+    if (b.cad_volume > 0)
+      worst_volume = std::max(worst_volume, std::abs(b.mesh_volume / b.cad_volume - 1));
+    near = near && b.boundary_distance <= b.chord_tolerance * (1 + 1e-9);
+    layers = layers && (b.layers.places == 0 ||
+                        (b.layers.mean >= b.layers_asked && b.layers.p5 >= 0.9 * b.layers_asked));
+  }
+  html +=
+      badge(layers ? "good" : "warn", layers ? "Layers reached" : "Layers not reached everywhere");
+  html += badge(worst_volume <= 5e-3 ? "good" : "warn",
+                "Volume within " + short_number(100 * std::max(worst_volume, 1e-6), 2) + " %");
+  html += badge(near ? "good" : "warn", near ? "Boundary within the chord tolerance"
+                                             : "Boundary beyond the chord tolerance");
+  for (const ExportCertificate& c : r.context.exports)
+    if (!c.agrees) html += badge("bad", c.file + " does not read back as written");
+  return html + "</div>";
+}
+
+std::string tiles(const Report& r) {
+  const IterationRecord& f = r.final_record;
+  double cad = 0, mesh = 0;
+  for (const BodyOutcome& b : r.outcome.bodies) {
+    cad += b.cad_volume;
+    mesh += b.mesh_volume;
+  }
+  return "<div class=\"tiles\">" + tile(grouped(f.nodes), "nodes") +
+         tile(grouped(f.elements), "tetrahedra") +
+         tile(layers_text(f.layers, f.layers.mean), "layers, mean") +
+         tile(layers_text(f.layers, f.layers.p5), "layers, 5 % quantile") +
+         tile(fixed(f.quality_mean, 3) + " / " + fixed(f.quality_min, 3), "quality, mean / worst") +
+         tile(difference(mesh, cad), "volume against CAD") + "</div>";
+}
+
+std::string bodies_table(const Report& r) {
+  std::string html =
+      "<h2>Bodies</h2><table><tr><th>body</th><th>n</th><th>layers mean</th><th>5 %</th>"
+      "<th>median</th><th>&ge; n</th><th>CAD volume mm&sup3;</th><th>mesh</th>"
+      "<th>boundary distance mm</th><th>tolerance</th><th>h min</th><th>first mesh by</th></tr>";
+  for (const BodyOutcome& b : r.outcome.bodies)
+    html += "<tr>" + cell(escaped(b.name), true) + cell(std::to_string(b.layers_asked)) +
+            cell(layers_text(b.layers, b.layers.mean)) + cell(layers_text(b.layers, b.layers.p5)) +
+            cell(layers_text(b.layers, b.layers.p50)) +
+            cell(b.layers.places ? percent(b.layers.share_reached) : "-") +
+            cell(short_number(b.cad_volume, 6)) + cell(difference(b.mesh_volume, b.cad_volume)) +
+            cell(short_number(b.boundary_distance, 3)) + cell(short_number(b.chord_tolerance, 3)) +
+            cell(short_number(b.h_min, 3)) + cell(escaped(b.first_mesh_by)) + "</tr>";
+  return html + "</table>";
+}
+
+std::string plots(const Report& r) {
+  std::string html = "<h2>Measured on the mesh</h2><div class=\"plots\">";
+  if (!r.context.section_png.empty())
+    html +=
+        "<figure class=\"wide\"><figcaption>Section</figcaption>"
+        "<img alt=\"Section of the mesh\" src=\"data:image/png;base64," +
+        base64(r.context.section_png) + "\"></figure>";
+  int asked = 0;
+  for (const BodyOutcome& b : r.outcome.bodies) asked = std::max(asked, b.layers_asked);
+  html += "<figure><figcaption>Element quality c(T), 1 is best</figcaption>" +
+          svg_histogram(r.quality, "quality in the metric") + "</figure>";
+  html += "<figure><figcaption>Layers through the walls, measured back</figcaption>" +
+          svg_histogram(r.layers, "layers at boundary nodes", asked,
+                        "asked: " + std::to_string(asked)) +
+          "</figure>";
+  std::vector<Series> series(3);
+  series[0].name = "nodes";
+  series[1].name = "mean";
+  series[2].name = "5 %";
+  for (const IterationRecord& record : r.outcome.records) {
+    series[0].values.push_back(static_cast<double>(record.nodes));
+    series[1].values.push_back(record.layers.mean);
+    series[2].values.push_back(record.layers.p5);
+  }
+  series[1].right = series[2].right = true;
+  html += "<figure><figcaption>Convergence</figcaption>" +
+          svg_convergence(series, "left", "layers, right", asked) + "</figure>";
+  html +=
+      "<figure><figcaption>Iterations</figcaption><table><tr><th>it</th><th>nodes</th>"
+      "<th>layers</th><th>5 %</th><th>quality</th><th>worst</th><th>s</th></tr>";
+  for (const IterationRecord& record : r.outcome.records)
+    html += "<tr>" + cell(std::to_string(record.iteration), true) + cell(grouped(record.nodes)) +
+            cell(layers_text(record.layers, record.layers.mean)) +
+            cell(layers_text(record.layers, record.layers.p5)) +
+            cell(fixed(record.quality_mean, 3)) + cell(fixed(record.quality_min, 3)) +
+            cell(fixed(record.seconds, 1)) + "</tr>";
+  return html + "</table></figure></div>";
+}
+
+std::string conformity_and_settings(const Report& r) {
+  const IterationRecord& f = r.final_record;
+  const MeshReport& v = r.validity;
+  const StudyOptions& o = r.study.options;
+  std::string html = "<div class=\"two\"><div><h2>Mesh</h2><table>";
+  html += row("boundary triangles", grouped(v.faces_boundary));
+  html += row("inverted elements", grouped(v.inverted));
+  html += row("faces of more than two elements", grouped(v.faces_shared));
+  html += row("free boundary faces not listed", grouped(v.facets_missing));
+  html += row("volume, by elements", short_number(v.volume, 8) + " mm&sup3;");
+  html += row("volume, by the boundary", short_number(v.volume_boundary, 8) + " mm&sup3;");
+  html += row("boundary area", short_number(v.boundary_area, 8) + " mm&sup2;");
+  html += row("conformity to the metric (0 is perfect)", fixed(f.conformity, 3));
+  html += row("unit edges", percent(f.unit_edges));
+  html += row("largest aspect ratio (Euclidean)", short_number(r.aspect_max, 4));
+  html += row("elements with aspect ratio above 50", percent(r.aspect_over_50));
+  html += "</table></div><div><h2>Settings</h2><table>";
+  for (const BodyOutcome& b : r.outcome.bodies) {
+    const BodySettings s = settings_of(r.study, b.name);
+    html += row(b.name + ": n, alpha", std::to_string(s.layers) + ", " + short_number(s.alpha));
+    html += row(b.name + ": h min, h max",
+                short_number(b.h_min) + " mm, " +
+                    (s.h_max ? short_number(*s.h_max) + " mm" : std::string("no bound")));
+  }
+  html += row("chord tolerance", o.chord_tolerance ? short_number(*o.chord_tolerance) + " mm"
+                                                   : "1/1000 of each body's diagonal");
+  html += row("angle tolerance", short_number(o.angle_tolerance) + " rad");
+  html += row("iterations at most", std::to_string(o.iterations));
+  html += row("threads", o.threads ? std::to_string(o.threads) : "all cores");
+  html += row("seed", std::to_string(o.seed));
+  html += row("time", short_number(r.outcome.seconds, 3) + " s");
+  return html + "</table></div></div>";
+}
+
+std::string files(const Report& r) {
+  std::string html;
+  if (!r.context.inputs.empty()) {
+    html +=
+        "<h2>Inputs</h2><table><tr><th>file</th><th>bytes</th><th class=\"left\">SHA-256</th></tr>";
+    for (const InputFile& i : r.context.inputs)
+      html += "<tr>" + cell(escaped(i.path), true) + cell(grouped(i.bytes)) +
+              "<td class=\"left hash\"><code>" + i.sha256 + "</code></td></tr>";
+    html += "</table>";
+  }
+  if (!r.context.exports.empty()) {
+    html +=
+        "<h2>Exports, read back and compared</h2><table><tr><th>file</th>"
+        "<th class=\"left\">format</th><th class=\"left\">names, areas and volumes</th></tr>";
+    for (const ExportCertificate& c : r.context.exports)
+      html +=
+          "<tr>" + cell(escaped(c.file), true) + cell(escaped(c.format), true) +
+          cell(c.agrees ? "agree (largest difference " + short_number(c.worst_difference, 2) + ")"
+                        : "<b class=\"bad\">" + escaped(c.finding) + "</b>",
+               true) +
+          "</tr>";
+    html += "</table>";
+  }
+  std::string notes;
+  for (const BodyOutcome& b : r.outcome.bodies)
+    for (const std::string& note : b.notes)
+      notes += "<li>" + escaped(b.name + ": " + note) + "</li>";
+  if (!notes.empty()) html += "<h2>Notes</h2><ul>" + notes + "</ul>";
+  if (!r.context.command.empty())
+    html += "<h2>To make this mesh again</h2><pre>" + escaped(r.context.command) + "</pre>";
+  return html;
+}
+
+}  // namespace
+
+std::string report_html(const Report& report) {
+  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+         "<meta name=\"viewport\" content=\"width=device-width\"><title>" +
+         escaped(report.study.name) + " - mesh report</title><style>" + kStyle +
+         "</style></head>\n<body><main><header><h1>" + escaped(report.study.name) +
+         "</h1><span>Mesh report &middot; Lamella " + version() + "</span></header>\n" +
+         verdict(report) + tiles(report) + bodies_table(report) + plots(report) +
+         conformity_and_settings(report) + files(report) +
+         "<footer>Lengths in mm. Quality, conformity and edges are measured in the metric asked; "
+         "layers are counted from wall to wall in the mesh's own metric; boundary distance is the "
+         "largest one of 15 points of each boundary triangle to the reference surface.</footer>"
+         "</main></body></html>\n";
+}
+
+}  // namespace lamella

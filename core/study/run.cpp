@@ -1,0 +1,292 @@
+#include "core/study/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/mesh/validate.h"
+#include "core/natural/layers.h"
+#include "core/natural/natural_metric.h"
+#include "core/optimize/adapt.h"
+#include "core/study/join.h"
+#include "core/study/measure.h"
+
+namespace lamella {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations share the rest
+constexpr double kSettled = 0.05;         // relative change of the node count
+
+/// 1 when the mesh has the layers asked: the 5 % quantile and the mean both count. A body without
+/// thin walls has nothing to measure and is content.
+double layers_score(const LayerStats& layers, int asked) {
+  if (layers.places == 0) return 1;
+  return std::min({1.0, layers.p5 / (0.9 * asked), layers.mean / asked});
+}
+
+/// The loop of one body: `begin` makes the first mesh, each `step` one iteration.
+class BodyLoop {
+ public:
+  BodyLoop(const Study& study, const Part& part)
+      : part_(part), options_(study.options), settings_(settings_of(study, part.name)) {
+    const double diagonal = box_diagonal(part.surface.points);
+    outcome_.name = part.name;
+    outcome_.layers_asked = settings_.layers;
+    outcome_.cad_volume = part.cad_volume;
+    outcome_.chord_tolerance = options_.chord_tolerance.value_or(1e-3 * diagonal);
+    outcome_.h_min = settings_.h_min.value_or(1e-3 * diagonal);
+    outcome_.notes = part.notes;
+    natural_.layers = settings_.layers;
+    natural_.alpha = settings_.alpha;
+    natural_.h_min = outcome_.h_min;
+    natural_.h_max = settings_.h_max.value_or(0);
+    natural_.threads = options_.threads;
+  }
+
+  Result<void> begin(const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+                     const Progress& progress) {
+    const auto start = Clock::now();
+    Result<SimplexMesh<3>> mesh = first_mesh(meshers, progress.portion(0, 0.7, "first mesh"));
+    if (!mesh) return mesh.error();
+    detector_.emplace(part_.surface);
+    return accept(std::move(*mesh), start, progress.portion(0.7, 1));
+  }
+
+  bool done() const { return done_; }
+
+  /// Errors: cancelled; failed when there is nothing better than the first mesh to fall back to.
+  Result<void> step(const Progress& progress) {
+    const auto start = Clock::now();
+    AdaptParams params;
+    params.chord_tolerance = outcome_.chord_tolerance;
+    params.seed = options_.seed;
+    Result<Adapted<3>> adapted =
+        adapt<3>(current_.mesh, current_.metric, &part_.surface, params, progress.portion(0, 0.8));
+    if (!adapted) return give_up(adapted.error());
+    if (Result<void> valid = validate<3>(adapted->mesh); !valid) return give_up(valid.error());
+    return accept(std::move(adapted->mesh), start, progress.portion(0.8, 1));
+  }
+
+  const MeshState& best() const { return best_; }
+  const IterationRecord& last_record() const { return outcome_.records.back(); }
+  const MeshState& current() const { return current_; }
+  bool converged() const { return converged_; }
+
+  /// Closes the books on the best mesh.
+  Result<BodyOutcome> finish(const Progress& progress) {
+    const IterationRecord& best = outcome_.records[best_record_];
+    outcome_.layers = best.layers;
+    outcome_.mesh_volume = best.volume;
+    Result<double> distance = boundary_distance(best_.mesh, part_.surface, progress);
+    if (!distance) return distance.error();
+    outcome_.boundary_distance = *distance;
+    if (best_record_ + 1 != outcome_.records.size())
+      outcome_.notes.push_back("The mesh of iteration " + std::to_string(best.iteration) +
+                               " was kept: later ones had fewer layers.");
+    return outcome_;
+  }
+
+ private:
+  Result<SimplexMesh<3>> first_mesh(const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+                                    const Progress& progress) {
+    Error last{Code::failed, "No mesher was given.", ""};
+    for (std::size_t i = 0; i < meshers.size(); ++i) {
+      const double width = 1.0 / static_cast<double>(meshers.size());
+      const double begin = width * static_cast<double>(i);
+      Result<SimplexMesh<3>> mesh =
+          meshers[i]->generate(part_.surface, progress.portion(begin, begin + width));
+      if (mesh) {
+        if (Result<void> valid = validate<3>(*mesh); valid) {
+          outcome_.first_mesh_by = meshers[i]->name();
+          return mesh;
+        } else {
+          mesh = valid.error();
+        }
+      }
+      if (mesh.error().code == Code::cancelled) return mesh.error();
+      outcome_.notes.push_back("First mesh: " + meshers[i]->name() +
+                               " gave up: " + mesh.error().message);
+      last = mesh.error();
+    }
+    return Error{
+        Code::failed, "Body \"" + part_.name + "\": no first mesh could be made. " + last.message,
+        last.hint.empty() ? "Try another chord tolerance, or repair the part." : last.hint};
+  }
+
+  /// Takes the mesh as the next state, with metric, layers and record.
+  Result<void> accept(SimplexMesh<3> mesh, Clock::time_point start, const Progress& progress) {
+    MeshState next;
+    next.mesh = std::move(mesh);
+    Result<NaturalDetector::Field> field =
+        detector_->field(next.mesh, natural_, progress.portion(0, 0.6));
+    if (!field) return field.error();
+    next.metric = std::move(field->metric);
+    next.thickness = std::move(field->thickness);
+    Result<IterationRecord> record = measure(next, progress.portion(0.6, 0.8));
+    if (!record) return record.error();
+    Result<Layers> layers = measure_layers(next.mesh, part_.surface, settings_.layers,
+                                           options_.threads, progress.portion(0.8, 1));
+    if (!layers) return layers.error();
+    next.layers = std::move(layers->at_node);
+    record->layers = layers->stats;
+    record->iteration = static_cast<int>(outcome_.records.size());
+    record->seconds = seconds_since(start);
+
+    const double score = layers_score(record->layers, settings_.layers);
+    if (!outcome_.records.empty()) {
+      const auto before = static_cast<double>(outcome_.records.back().nodes);
+      const double change = std::abs(static_cast<double>(record->nodes) - before) / before;
+      converged_ = score >= 1 && record->iteration > 1 && change < kSettled;
+      done_ = converged_;
+    }
+    // Among meshes as good the latest is the most conforming one. The first mesh has no layers to
+    // speak of: anything adapted goes before it.
+    if (record->iteration <= 1 || score >= best_score_) {
+      best_ = next;
+      best_score_ = score;
+      best_record_ = outcome_.records.size();
+    }
+    current_ = std::move(next);
+    outcome_.records.push_back(*record);
+    return {};
+  }
+
+  /// An iteration that failed ends the body with what it has; without any adapted mesh it is an
+  /// error.
+  Result<void> give_up(const Error& error) {
+    if (error.code == Code::cancelled) return error;
+    const std::string place =
+        "Body \"" + part_.name + "\", iteration " + std::to_string(outcome_.records.size()) + ": ";
+    if (outcome_.records.size() == 1) return Error{error.code, place + error.message, error.hint};
+    outcome_.notes.push_back(place + error.message + " The mesh before it was kept.");
+    done_ = true;
+    converged_ = false;
+    return {};
+  }
+
+  const Part& part_;
+  const StudyOptions& options_;
+  const BodySettings settings_;
+  NaturalParams natural_;
+  std::optional<NaturalDetector> detector_;
+  MeshState current_, best_;
+  double best_score_ = 0;
+  std::size_t best_record_ = 0;
+  bool done_ = false, converged_ = false;
+  BodyOutcome outcome_;
+};
+
+Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
+  const auto usage = [](const std::string& message, const std::string& hint) {
+    return Error{Code::usage, message, hint};
+  };
+  if (parts.empty()) return usage("There is no body to mesh.", "Open a STEP or STL file.");
+  if (study.options.iterations < 1)
+    return usage("At least one iteration is needed.", "Ask for 1 or more; 6 is the default.");
+  if (study.options.chord_tolerance && !(*study.options.chord_tolerance > 0))
+    return usage("The chord tolerance must be positive.", "Leave it out for the default.");
+  for (const Part& part : parts) {
+    const BodySettings body = settings_of(study, part.name);
+    const std::string who = "Body \"" + part.name + "\": ";
+    if (body.layers < 1) return usage(who + "at least one layer is needed.", "Ask for n >= 1.");
+    if (!(body.alpha >= 0)) return usage(who + "alpha must not be negative.", "1 is the default.");
+    if (body.h_min && !(*body.h_min > 0))
+      return usage(who + "h_min must be positive.", "Leave it out for the default.");
+    if (body.h_max && !(*body.h_max >= body.h_min.value_or(0) && *body.h_max > 0))
+      return usage(who + "h_max must be positive and not below h_min.", "Leave it out for none.");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
+                    const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+                    Progress progress, IterationSink on_iteration) {
+  const auto start = Clock::now();
+  if (Result<void> good = check_request(study, parts); !good) return good.error();
+
+  Outcome outcome;
+  std::vector<BodyLoop> bodies;
+  bodies.reserve(parts.size());
+  std::vector<std::string> names;
+  for (const Part& part : parts) {
+    bodies.emplace_back(study, part);
+    names.push_back(part.name);
+  }
+  const auto joined = [&](auto&& state_of) {
+    std::vector<const MeshState*> states;
+    for (const BodyLoop& body : bodies) states.push_back(&state_of(body));
+    return join(states, names);
+  };
+  const auto tell = [&](int iteration, Clock::time_point since) {
+    std::vector<const IterationRecord*> records;
+    for (const BodyLoop& body : bodies) records.push_back(&body.last_record());
+    IterationRecord all = join(records);
+    all.iteration = iteration;
+    all.seconds = seconds_since(since);
+    outcome.records.push_back(all);
+    if (on_iteration)
+      on_iteration(all, joined([](const BodyLoop& b) -> const MeshState& { return b.current(); }));
+  };
+  const auto count = static_cast<double>(bodies.size());
+
+  const Progress first = progress.portion(0, kFirstMeshShare, "first mesh");
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto at = static_cast<double>(b);
+    if (Result<void> made = bodies[b].begin(meshers, first.portion(at / count, (at + 1) / count));
+        !made)
+      return made.error();
+  }
+  tell(0, start);
+
+  const int iterations = study.options.iterations;
+  for (int i = 1; i <= iterations && !outcome.cancelled; ++i) {
+    if (std::all_of(bodies.begin(), bodies.end(), [](const BodyLoop& b) { return b.done(); }))
+      break;
+    const auto since = Clock::now();
+    const double width = (0.97 - kFirstMeshShare) / iterations;
+    const Progress round =
+        progress.portion(kFirstMeshShare + width * (i - 1), kFirstMeshShare + width * i,
+                         "iteration " + std::to_string(i));
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (bodies[b].done()) continue;
+      const auto at = static_cast<double>(b);
+      Result<void> stepped = bodies[b].step(round.portion(at / count, (at + 1) / count));
+      if (stepped) continue;
+      if (stepped.error().code != Code::cancelled) return stepped.error();
+      outcome.cancelled = true;
+      break;
+    }
+    if (!outcome.cancelled) tell(i, since);
+  }
+
+  outcome.state = joined([](const BodyLoop& b) -> const MeshState& { return b.best(); });
+  // The books are closed after a cancel too; what that takes is bounded by one pass over the mesh.
+  outcome.converged = !outcome.cancelled;
+  for (BodyLoop& body : bodies) {
+    Result<BodyOutcome> closed =
+        body.finish(outcome.cancelled ? Progress{} : progress.portion(0.97, 1, "closing"));
+    if (!closed) {
+      outcome.cancelled = true;
+      closed = body.finish(Progress{});
+    }
+    outcome.converged = outcome.converged && body.converged();
+    outcome.bodies.push_back(std::move(*closed));
+  }
+  if (outcome.bodies.size() > 1)
+    for (BodyOutcome& body : outcome.bodies)
+      body.notes.push_back("Bodies are meshed one by one: where they touch, nodes are not shared.");
+  outcome.seconds = seconds_since(start);
+  progress.report(1);
+  return outcome;
+}
+
+}  // namespace lamella

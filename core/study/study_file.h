@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/base/result.h"
+#include "core/study/study.h"
+
+namespace lamella {
+
+/// A study as plain JSON, schema version 1: name, unit ("mm"), inputs (relative to the study's
+/// folder), bodies and options, named as the members of Study. What is unset is left out.
+std::string study_to_json(const Study& study);
+
+/// Reads what `study_to_json` writes; members left out keep their defaults. `where` names the
+/// source in messages. Errors: bad_input (not JSON, an unknown member, a value of the wrong type or
+/// out of range, a newer schema), naming the member.
+Result<Study> study_from_json(const std::string& text, const std::string& where);
+
+/// Errors: io, bad_input.
+Result<Study> read_study(const std::filesystem::path& file);
+/// Errors: io; nothing is left behind.
+Result<void> write_study(const Study& study, const std::filesystem::path& file);
+
+/// The inputs as paths, those that are relative seen from `folder`.
+std::vector<std::filesystem::path> input_files(const Study& study,
+                                               const std::filesystem::path& folder);
+
+}  // namespace lamella
