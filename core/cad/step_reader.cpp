@@ -1,0 +1,233 @@
+#include "core/cad/step_reader.h"
+
+#include <BRep_Builder.hxx>
+#include <Interface_Static.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Controller.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Shape.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <XCAFPrs.hxx>
+#include <XCAFPrs_DocumentExplorer.hxx>
+#include <map>
+#include <set>
+
+#include "core/base/atomic_file.h"
+#include "core/cad/occt_progress.h"
+
+namespace lamella {
+namespace {
+
+Error bad(const std::filesystem::path& file, const std::string& finding, std::string hint) {
+  return {Code::bad_input, file.filename().string() + ": " + finding, std::move(hint)};
+}
+
+std::string counted(std::size_t n, const std::string& what) {
+  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
+
+/// A reading setting of OCCT, put back at the end: they are global to the program.
+class Setting {
+ public:
+  Setting(const char* name, const char* value) : name_(name) {
+    if (const char* before = Interface_Static::CVal(name)) before_ = before;
+    Interface_Static::SetCVal(name, value);
+  }
+  ~Setting() { Interface_Static::SetCVal(name_, before_.c_str()); }
+  Setting(const Setting&) = delete;
+  Setting& operator=(const Setting&) = delete;
+
+ private:
+  const char* name_;
+  std::string before_;
+};
+
+class Document {
+ public:
+  Document() { XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document_); }
+  ~Document() {
+    if (!document_.IsNull()) XCAFApp_Application::GetApplication()->Close(document_);
+  }
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+  Handle(TDocStd_Document) & get() { return document_; }
+
+ private:
+  Handle(TDocStd_Document) document_;
+};
+
+/// STEP is a text between two fixed words: a missing end is a cut file.
+Result<void> check_envelope(const std::filesystem::path& file, const std::string& text) {
+  if (text.empty()) return bad(file, "the file is empty", "Copy or export it again.");
+  if (text.substr(0, 4096).find("ISO-10303-21") == std::string::npos) {
+    return bad(file, "not a STEP file (it does not begin with ISO-10303-21)",
+               "Lamella reads STEP (AP203, AP214, AP242) and STL; check the file.");
+  }
+  const std::size_t tail = text.size() > 4096 ? text.size() - 4096 : 64;
+  if (text.find("END-ISO-10303-21", tail) == std::string::npos) {
+    return bad(file, "truncated STEP file (END-ISO-10303-21 is missing)",
+               "Copy or export it again.");
+  }
+  return {};
+}
+
+std::string name_of(const TDF_Label& label) {
+  Handle(TDataStd_Name) name;
+  if (label.IsNull() || !label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
+  const TCollection_ExtendedString& wide = name->Get();
+  std::string text(static_cast<std::size_t>(wide.LengthOfCString()) + 1, '\0');
+  Standard_PCharacter out = text.data();
+  text.resize(static_cast<std::size_t>(wide.ToUTF8CString(out)));
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos || text == "NONE") return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::array<double, 3> srgb(const Quantity_Color& color) {
+  std::array<double, 3> c{};
+  color.Values(c[0], c[1], c[2], Quantity_TOC_sRGB);
+  return c;
+}
+
+std::array<double, 3> color_of(const XCAFPrs_Style& style) {
+  if (!style.IsSetColorSurf()) return {-1, -1, -1};
+  return srgb(style.GetColorSurf());
+}
+
+std::size_t count(const TopoDS_Shape& shape, TopAbs_ShapeEnum what, TopAbs_ShapeEnum outside) {
+  std::size_t n = 0;
+  for (TopExp_Explorer it(shape, what, outside); it.More(); it.Next()) ++n;
+  return n;
+}
+
+struct Found {
+  TopoDS_Shape solid;
+  SolidInfo info;
+};
+
+struct Loose {
+  std::size_t shells = 0;
+  std::size_t faces = 0;
+};
+
+void collect(const XCAFPrs_DocumentNode& node, std::vector<Found>& found, Loose& loose) {
+  const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(node.RefLabel).Located(node.Location);
+  if (shape.IsNull()) return;
+  loose.shells += count(shape, TopAbs_SHELL, TopAbs_SOLID);
+  loose.faces += count(shape, TopAbs_FACE, TopAbs_SHELL);
+  XCAFPrs_IndexedDataMapOfShapeStyle styles;
+  XCAFPrs::CollectStyleSettings(node.RefLabel, node.Location, styles);
+  std::string name = name_of(node.RefLabel);
+  if (name.empty()) name = name_of(node.Label);
+  for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
+    Found f{it.Current(), {name, color_of(node.Style), {}, {}}};
+    const auto styled = [&](const TopoDS_Shape& s, std::array<double, 3> otherwise) {
+      const XCAFPrs_Style* style = styles.Seek(s);
+      return style != nullptr && style->IsSetColorSurf() ? color_of(*style) : otherwise;
+    };
+    f.info.color = styled(shape, f.info.color);
+    f.info.color = styled(f.solid, f.info.color);
+    for (TopExp_Explorer face(f.solid, TopAbs_FACE); face.More(); face.Next()) {
+      f.info.face_colors.push_back(styled(face.Current(), {-1, -1, -1}));
+    }
+    found.push_back(std::move(f));
+  }
+}
+
+/// Solids of the same product, or of none, get numbers.
+void make_names_unique(std::vector<Found>& found, const std::string& fallback) {
+  std::map<std::string, int> uses;
+  for (Found& f : found) {
+    if (f.info.name.empty()) f.info.name = fallback;
+    ++uses[f.info.name];
+  }
+  std::set<std::string> taken;
+  std::map<std::string, int> next;
+  for (Found& f : found) {
+    const std::string base = f.info.name;
+    while (uses[base] > 1 || taken.count(f.info.name) > 0) {
+      f.info.name = base + " " + std::to_string(++next[base]);
+      if (taken.count(f.info.name) == 0 && uses.count(f.info.name) == 0) break;
+    }
+    taken.insert(f.info.name);
+  }
+}
+
+Error no_solid(const std::filesystem::path& file, const std::string& text, const Loose& loose) {
+  const std::string hint = "Sew the faces into a solid in the CAD program and export it again.";
+  if (loose.shells + loose.faces > 0) {
+    std::string what = loose.shells > 0 ? counted(loose.shells, "free shell") : "";
+    if (loose.faces > 0) {
+      if (!what.empty()) what += " and ";
+      what += counted(loose.faces, "loose face");
+    }
+    return bad(file, "no solid: the file holds only " + what, hint);
+  }
+  if (text.find("TESSELLATED_") != std::string::npos) {
+    return bad(file, "no solid: the file holds tessellated geometry only",
+               "Export the exact (B-rep) geometry, or an STL.");
+  }
+  return bad(file, "no solid: the file holds no shape", "Export the part again.");
+}
+
+}  // namespace
+
+Result<void> read_step(const std::filesystem::path& file, const Progress& progress,
+                       const SolidVisitor& visit) {
+  Result<std::string> text = read_file(file);
+  if (!text) return text.error();
+  if (Result<void> envelope = check_envelope(file, *text); !envelope) return envelope.error();
+  if (progress.cancelled()) return cancelled_error();
+
+  STEPCAFControl_Controller::Init();
+  const Setting unit("xstep.cascade.unit", "MM");
+  STEPCAFControl_Reader reader;
+  reader.SetNameMode(Standard_True);
+  reader.SetColorMode(Standard_True);
+  reader.SetLayerMode(Standard_False);
+  reader.SetPropsMode(Standard_False);
+  reader.SetGDTMode(Standard_False);
+  reader.SetMatMode(Standard_False);
+  reader.SetViewMode(Standard_False);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
+    return bad(file, "the STEP text cannot be read", "The file is damaged; export it again.");
+  }
+  if (progress.cancelled()) return cancelled_error();
+  Document document;
+  Handle(OcctProgress) bridge = new OcctProgress(progress.portion(0.05, 0.4, "Reading STEP"));
+  const bool transferred = reader.Transfer(document.get(), bridge->Start());
+  if (progress.cancelled()) return cancelled_error();
+
+  std::vector<Found> found;
+  Loose loose;
+  if (transferred) {
+    for (XCAFPrs_DocumentExplorer it(document.get(), XCAFPrs_DocumentExplorerFlags_OnlyLeafNodes);
+         it.More(); it.Next()) {
+      collect(it.Current(), found, loose);
+    }
+  }
+  if (found.empty()) return no_solid(file, *text, loose);
+  make_names_unique(found, file.stem().string());
+  if (loose.shells + loose.faces > 0) {
+    found[0].info.notes.push_back(counted(loose.shells, "free shell") + " and " +
+                                  counted(loose.faces, "loose face") +
+                                  " beside the solids of the file were left out.");
+  }
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const auto at = [&](std::size_t i) {
+      return 0.4 + 0.6 * static_cast<double>(i) / static_cast<double>(found.size());
+    };
+    if (progress.cancelled()) return cancelled_error();
+    Result<void> done = visit(found[k].solid, std::move(found[k].info),
+                              progress.portion(at(k), at(k + 1), "Tessellating"));
+    if (!done) return done.error();
+  }
+  return {};
+}
+
+}  // namespace lamella

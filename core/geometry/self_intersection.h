@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/geometry/surface.h"
+
+namespace lamella {
+
+struct SelfIntersections {
+  std::size_t pairs = 0;          ///< pairs of facets that cross or fold onto each other
+  Vec<3> place = Vec<3>::Zero();  ///< a vertex of the first pair
+};
+
+/// Pairs of facets that properly cross, or that fold onto each other at a common edge. Facets that
+/// only touch are not counted.
+SelfIntersections find_self_intersections(const ReferenceSurface<3>& surface);
+
+}  // namespace lamella

@@ -1,0 +1,53 @@
+# Install rules and the Debian package (packages of the group `package` in packages.txt):
+#   cmake --build build && cpack --config build/CPackConfig.cmake
+include(GNUInstallDirs)
+
+set(share ${CMAKE_INSTALL_DATADIR})
+# Netgen's libraries lie in a folder of their own, which the installed programs must remember.
+if(TARGET lamella-cli)
+  set_target_properties(lamella-cli PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+  install(TARGETS lamella-cli)
+  find_program(GZIP gzip)
+  if(GZIP)
+    add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/lamella-cli.1.gz
+      COMMAND ${GZIP} -9nc ${CMAKE_CURRENT_LIST_DIR}/lamella-cli.1 > ${CMAKE_BINARY_DIR}/lamella-cli.1.gz
+      DEPENDS ${CMAKE_CURRENT_LIST_DIR}/lamella-cli.1 VERBATIM)
+    add_custom_target(lamella_man ALL DEPENDS ${CMAKE_BINARY_DIR}/lamella-cli.1.gz)
+    install(FILES ${CMAKE_BINARY_DIR}/lamella-cli.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  endif()
+endif()
+if(TARGET lamella)
+  set_target_properties(lamella PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+  install(TARGETS lamella)
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.desktop DESTINATION ${share}/applications)
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.metainfo.xml DESTINATION ${share}/metainfo)
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.mime.xml DESTINATION ${share}/mime/packages
+          RENAME org.lamella.Lamella.xml)
+  install(FILES ${PROJECT_SOURCE_DIR}/resources/icons/lamella.svg
+          DESTINATION ${share}/icons/hicolor/scalable/apps RENAME org.lamella.Lamella.svg)
+endif()
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${share}/doc/lamella)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${share}/doc/lamella)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/resources/docs/ DESTINATION ${share}/doc/lamella/docs)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME lamella)
+set(CPACK_PACKAGE_CONTACT "Lamella maintainers <maintainers@lamella.invalid>")
+set(CPACK_PACKAGE_VENDOR Lamella)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "anisotropic tetrahedral meshes for injection molding")
+set(CPACK_PACKAGE_DESCRIPTION
+    "Lamella reads STEP and STL parts and makes tetrahedral meshes with n element layers\n\
+through every wall. lamella is the window, lamella-cli the batch program.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR})
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+if(NGLIB_LIBRARY)
+  get_filename_component(NGLIB_FOLDER ${NGLIB_LIBRARY} DIRECTORY)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${NGLIB_FOLDER})
+endif()
+# Loaded at run time, so no tool finds it: the plugin that draws SVG icons.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS libqt6svg6)
+include(CPack)
