@@ -143,6 +143,7 @@ struct Locator<D>::Impl {
 
   struct Block {
     double v[D][D][4];  // [vertex][axis][facet]
+    float n[D][4];      // [axis][facet] unit normal, to tell most entered facets at once
     std::int32_t facet[4];
   };
 
@@ -188,14 +189,25 @@ struct Locator<D>::Impl {
         first = last;
       }
     }
-    fill_blocks();
     sum_normals();
+    fill_blocks();
   }
 
   std::array<Vec<D>, D> corners(std::int32_t f) const {
     std::array<Vec<D>, D> p;
     for (int k = 0; k < D; ++k) p[k] = points[facets[f][k]];
     return p;
+  }
+
+  /// True when a ray along u cannot leave the body through any facet of the block.
+  static bool all_entered(const Block& b, const std::array<float, D>& u) {
+    float cosine[4];
+    for (int k = 0; k < 4; ++k) {
+      cosine[k] = 0;
+      for (int a = 0; a < D; ++a) cosine[k] += b.n[a][k] * u[a];
+    }
+    constexpr float kRounding = 1e-5f;
+    return std::max(std::max(cosine[0], cosine[1]), std::max(cosine[2], cosine[3])) < -kRounding;
   }
 
   void fill_blocks() {
@@ -207,6 +219,7 @@ struct Locator<D>::Impl {
       const auto p = corners(order[i]);
       for (int k = 0; k < D; ++k)
         for (int a = 0; a < D; ++a) b.v[k][a][i % 4] = p[k][a];
+      for (int a = 0; a < D; ++a) b.n[a][i % 4] = static_cast<float>(normals[order[i]][a]);
     }
   }
 
@@ -307,6 +320,12 @@ std::optional<Nearest<D>> Locator<D>::nearest_on_face(const Vec<D>& x, std::int3
 }
 
 template <int D>
+Nearest<D> Locator<D>::nearest_on_facet(const Vec<D>& x, std::int32_t facet) const {
+  const Vec<D> p = foot_on_facet(impl_->corners(facet), x).point;
+  return {p, facet, (p - x).squaredNorm()};
+}
+
+template <int D>
 void Locator<D>::all_within(const Vec<D>& x, double radius, std::vector<Nearest<D>>& found) const {
   found.clear();
   double bound2 = radius * radius;
@@ -330,8 +349,12 @@ std::optional<RayHit> Locator<D>::exit(const Vec<D>& x, const Vec<D>& u, double 
   RayHit hit;
   hit.t = t_max;
   const RayTest<D> test(x, u);
-  impl_->bvh.along(impl_->root, x, u, hit.t,
-                   [&](std::int32_t b) { test(impl_->blocks[b], t_min, hit.t, hit.facet); });
+  std::array<float, D> uf;
+  for (int a = 0; a < D; ++a) uf[a] = static_cast<float>(u[a]);
+  impl_->bvh.along(impl_->root, x, u, hit.t, [&](std::int32_t b) {
+    const auto& block = impl_->blocks[b];
+    if (!Impl::all_entered(block, uf)) test(block, t_min, hit.t, hit.facet);
+  });
   if (hit.facet < 0) return std::nullopt;
   return hit;
 }

@@ -42,6 +42,8 @@ class Locator {
   /// Every facet nearer than `radius`, each with its nearest point, by growing distance (then by
   /// facet). `found` is overwritten.
   void all_within(const Vec<D>& x, double radius, std::vector<Nearest<D>>& found) const;
+  /// Nearest point of one facet.
+  Nearest<D> nearest_on_facet(const Vec<D>& x, std::int32_t facet) const;
   /// Nearest among the facets of one CAD face.
   std::optional<Nearest<D>> nearest_on_face(const Vec<D>& x, std::int32_t face) const;
   /// First facet hit from x along the unit direction u, leaving the body only (normal . u > 0),

@@ -13,10 +13,20 @@ struct Layers {
   LayerStats stats;             ///< over the boundary facets' centers
 };
 
-/// Layers measured back: from each boundary facet's center along the inward wall direction to the
-/// opposite wall, the segment's length in the elements' own metric M_T (1.11), summed over the
-/// elements it crosses. A place counts only where the wall is thin (the far wall is a true opposite
-/// wall). `asked` is n, for the share that reached it.
+/// Layers measured back: from each boundary facet's center along its inward normal to the opposite
+/// wall, the segment's length in the elements' own metric M_T (1.11), summed over the elements it
+/// crosses. `asked` is n, for the share that reached it.
+///
+/// The unit is an edge length: n layers of structured (Kuhn) cells, however stretched, give exactly
+/// n, and so does any element with one edge right across each layer. n layers as thick as the
+/// height of the regular tetrahedron, sqrt(2/3) of its edge, give 0.816 n.
+///
+/// A place counts where the wall is thin: the far wall is parallel within 35 degrees, and the
+/// segment is no longer than 1.3 times the thickness of `surface` there (the medial ball). When no
+/// place is thin, all that have an opposite wall count; when none has, `places` is 0. Statistics
+/// are weighted by the facets' areas. Each place passes its value on to the nodes of its facet and
+/// of the elements it crosses; a node keeps the mean. Errors: usage (asked < 1), bad_input (empty
+/// surface), cancelled.
 Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
                               int asked, int threads = 0, const Progress& progress = {});
 

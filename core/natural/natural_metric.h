@@ -12,18 +12,18 @@
 namespace lamella {
 
 struct NaturalParams {
-  int layers = 4;      ///< n
-  double alpha = 1;    ///< alpha_h of (4.68)
-  double h_min = 0;    ///< mm
-  double h_max = 0;    ///< mm; 0: the box diagonal
-  int threads = 0;     ///< 0: all cores; the result does not depend on it
+  int layers = 4;    ///< n
+  double alpha = 1;  ///< alpha_h of (4.68)
+  double h_min = 0;  ///< mm
+  double h_max = 0;  ///< mm; 0: the box diagonal
+  int threads = 0;   ///< 0: all cores; the result does not depend on it
 };
 
 /// What the geometric detector says of one point.
 struct Natural {
   Metric<3> metric;
-  double thickness = 0;          ///< 2 r of the medial ball, mm
-  Vec<3> direction;              ///< unit, across the wall
+  double thickness = 0;  ///< 2 r of the medial ball, mm
+  Vec<3> direction;      ///< unit, across the wall
 };
 
 /// The geometric detector of the natural metric (chapter 4): wall thickness and direction at any
@@ -37,9 +37,9 @@ class NaturalDetector {
   Natural at(const Vec<3>& x, const NaturalParams& params) const;
 
   struct Field {
-    MetricField<3> metric;           ///< [node]
-    std::vector<double> thickness;   ///< [node], mm
-    std::vector<Vec<3>> direction;   ///< [node]
+    MetricField<3> metric;          ///< [node]
+    std::vector<double> thickness;  ///< [node], mm
+    std::vector<Vec<3>> direction;  ///< [node]
   };
   /// At every node of the mesh. Errors: usage (n < 1, h_min > h_max), cancelled.
   Result<Field> field(const SimplexMesh<3>& mesh, const NaturalParams& params,

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+
+#include "core/base/progress.h"
+
+namespace lamella {
+
+/// Calls work(i) once for every i in [0, count), on `threads` threads (0: all cores), in no given
+/// order: each call must write only what belongs to i, so that the thread count changes nothing.
+/// Reports progress. Returns false when cancelled, some calls then being left out.
+template <class Work>
+bool parallel_each(std::size_t count, int threads, const Progress& progress, Work&& work,
+                   std::size_t grain = 64) {
+  std::atomic<std::size_t> done{0};
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(threads > 0 ? std::min(threads, cores) : cores);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+      if (progress.cancelled()) return;
+      for (auto i = range.begin(); i != range.end(); ++i) work(i);
+      progress.report(static_cast<double>(done += range.size()) / static_cast<double>(count));
+    });
+  });
+  return !progress.cancelled();
+}
+
+}  // namespace lamella

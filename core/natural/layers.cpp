@@ -1,0 +1,227 @@
+#include "core/natural/layers.h"
+
+#include <limits>
+#include <numeric>
+
+#include "core/base/parallel.h"
+#include "core/geometry/locator.h"
+#include "core/mesh/adjacency.h"
+#include "core/metric/metric.h"
+#include "core/natural/medial_ball.h"
+
+namespace lamella {
+namespace {
+
+constexpr double kParallel = 0.82;  // cosine of 35 degrees: walls less inclined are opposite
+constexpr double kThin = 1.3;       // of the thickness: longer segments do not cross the wall
+
+using Mesh = SimplexMesh<3>;
+
+/// What lies behind each face of each element: element >= 0, or -1 - (index into `facets`), or
+/// kOpen where no facet is listed.
+struct Neighbors {
+  static constexpr std::int32_t kOpen = std::numeric_limits<std::int32_t>::min();
+  std::vector<std::array<std::int32_t, 4>> across;  ///< [element][opposite vertex]
+  struct Owner {
+    std::int32_t element = -1;
+    int local = 0;
+  };
+  std::vector<Owner> owner;  ///< [facet] the element it bounds
+
+  explicit Neighbors(const Mesh& mesh) {
+    across.assign(mesh.elements.size(), {kOpen, kOpen, kOpen, kOpen});
+    owner.resize(mesh.facets.size());
+    std::vector<std::int32_t> sorted(mesh.facets.size());
+    std::iota(sorted.begin(), sorted.end(), 0);
+    const auto key = [&](std::int32_t f) {
+      auto nodes = mesh.facets[f];
+      std::sort(nodes.begin(), nodes.end());
+      return nodes;
+    };
+    std::sort(sorted.begin(), sorted.end(),
+              [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+    const auto uses = face_uses<3>(mesh.elements, mesh.points.size());
+    for_each_face<3>(uses, [&](std::size_t first, std::size_t last) {
+      const auto& a = uses[first];
+      if (last - first == 2) {
+        const auto& b = uses[first + 1];
+        across[a.element][a.local] = b.element;
+        across[b.element][b.local] = a.element;
+        return;
+      }
+      if (last - first != 1) return;
+      const auto at = std::lower_bound(
+          sorted.begin(), sorted.end(), a.nodes,
+          [&](std::int32_t f, const std::array<NodeId, 3>& nodes) { return key(f) < nodes; });
+      if (at == sorted.end() || key(*at) != a.nodes) return;
+      across[a.element][a.local] = -1 - *at;
+      owner[*at] = {a.element, a.local};
+    });
+  }
+};
+
+/// A straight walk through the mesh, from a facet to the boundary beyond.
+struct Walk {
+  std::vector<std::int32_t> crossed;
+  double length = 0;        ///< mm
+  double layers = 0;        ///< length in the metrics of the elements crossed
+  std::int32_t facet = -1;  ///< reached; -1: the walk failed
+};
+
+Walk walk(const Mesh& mesh, const Neighbors& neighbors, std::int32_t from, const Vec<3>& origin,
+          const Vec<3>& u) {
+  Walk w;
+  auto [element, entered] = neighbors.owner[from];
+  const auto body = mesh.element_body.empty() ? 0 : mesh.element_body[element];
+  double t = 0;
+  // A line meets an element once; more steps than that means it runs along faces, in a circle.
+  const std::size_t limit = 1000 + mesh.elements.size() / 8;
+  while (w.crossed.size() < limit) {
+    const auto& e = mesh.elements[element];
+    double leave = std::numeric_limits<double>::infinity();
+    int through = -1;
+    for (int k = 0; k < 4; ++k) {
+      if (k == entered) continue;
+      const auto f = mesh.corners(opposite_facet<3>(e, k));
+      const Vec<3> n = facet_normal<3>(f);
+      const double rate = n.dot(u);
+      if (!(rate > 0)) continue;
+      const double s = n.dot(f[0] - origin) / rate;
+      if (s < leave) {
+        leave = s;
+        through = k;
+      }
+    }
+    if (through < 0) return w;
+    leave = std::max(leave, t);
+    if (leave > t) {
+      // Flat elements have no metric; a line spends no length in them.
+      const Vec<3> d = (leave - t) * u;
+      const auto p = mesh.corners(e);
+      if (signed_measure<3>(p) > 0) w.layers += metric_length<3>(d, simplex_metric<3>(p));
+      t = leave;
+    }
+    w.crossed.push_back(element);
+    const auto next = neighbors.across[element][through];
+    if (next == Neighbors::kOpen) return w;
+    if (next < 0) {
+      w.facet = -1 - next;
+      w.length = t;
+      return w;
+    }
+    if (!mesh.element_body.empty() && mesh.element_body[next] != body) return w;
+    for (int k = 0; k < 4; ++k)
+      if (neighbors.across[next][k] == element) entered = k;
+    element = next;
+  }
+  return w;
+}
+
+struct Place {
+  bool opposite = false;  ///< the far wall faces this one
+  bool thin = false;      ///< and the segment is the local thickness
+  double layers = 0;
+  double area = 0;
+  std::vector<std::int32_t> crossed;
+};
+
+Place measure(const Mesh& mesh, const Neighbors& neighbors, const Locator<3>& surface,
+              std::int32_t facet) {
+  Place place;
+  const auto corners = mesh.corners(mesh.facets[facet]);
+  const Vec<3> n = facet_normal<3>(corners);
+  place.area = 0.5 * n.norm();
+  if (neighbors.owner[facet].element < 0 || !(place.area > 0)) return place;
+  const Vec<3> center = (corners[0] + corners[1] + corners[2]) / 3;
+  const Vec<3> u = -n.normalized();
+
+  // Structured meshes have edges exactly below a center: step aside when the line is caught there.
+  Walk w;
+  for (int attempt = 0; attempt < 3 && w.facet < 0; ++attempt)
+    w = walk(mesh, neighbors, facet,
+             center + 0.01 * attempt * (corners[attempt % 3] - center) +
+                 0.003 * attempt * (corners[(attempt + 1) % 3] - center),
+             u);
+  if (w.facet < 0) return place;
+  const Vec<3> far = facet_normal<3>(mesh.corners(mesh.facets[w.facet])).normalized();
+  place.opposite = far.dot(u) > kParallel;
+  if (!place.opposite) return place;
+  place.layers = w.layers;
+  place.crossed = std::move(w.crossed);
+  place.thin = w.length < kThin * 2 * climb_to_medial_ball(surface, center).radius;
+  return place;
+}
+
+LayerStats statistics(const std::vector<Place>& places, const std::vector<std::int32_t>& counted,
+                      int asked) {
+  LayerStats stats;
+  stats.places = counted.size();
+  if (counted.empty()) return stats;
+  auto order = counted;
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return places[a].layers < places[b].layers;
+  });
+  double total = 0, sum = 0, reached = 0;
+  for (const auto i : order) {
+    total += places[i].area;
+    sum += places[i].area * places[i].layers;
+    if (places[i].layers >= asked - 1e-6) reached += places[i].area;
+  }
+  const auto quantile = [&](double q) {
+    double below = 0;
+    for (const auto i : order)
+      if ((below += places[i].area) >= q * total) return places[i].layers;
+    return places[order.back()].layers;
+  };
+  stats.mean = sum / total;
+  stats.p5 = quantile(0.05);
+  stats.p50 = quantile(0.5);
+  stats.share_reached = reached / total;
+  return stats;
+}
+
+}  // namespace
+
+Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
+                              int asked, int threads, const Progress& progress) {
+  if (asked < 1) return Error{Code::usage, "The number of layers asked must be at least 1.", ""};
+  const Locator<3> locator(surface);
+  if (locator.empty())
+    return Error{Code::bad_input, "The body has no surface to measure its walls on.", ""};
+  const Neighbors neighbors(mesh);
+  if (progress.cancelled()) return cancelled_error();
+
+  std::vector<Place> places(mesh.facets.size());
+  if (!parallel_each(places.size(), threads, progress, [&](std::size_t f) {
+        places[f] = measure(mesh, neighbors, locator, static_cast<std::int32_t>(f));
+      }))
+    return cancelled_error();
+
+  // A body without any wall is measured right through.
+  const bool any_thin =
+      std::any_of(places.begin(), places.end(), [](const Place& p) { return p.thin; });
+  std::vector<std::int32_t> counted;
+  for (std::size_t f = 0; f < places.size(); ++f)
+    if (any_thin ? places[f].thin : places[f].opposite)
+      counted.push_back(static_cast<std::int32_t>(f));
+
+  Layers layers;
+  layers.stats = statistics(places, counted, asked);
+  std::vector<double> weight(mesh.points.size(), 0.0);
+  layers.at_node.assign(mesh.points.size(), 0.0);
+  const auto give = [&](NodeId node, double value) {
+    layers.at_node[node] += value;
+    weight[node] += 1;
+  };
+  for (const auto f : counted) {
+    for (const auto node : mesh.facets[f]) give(node, places[f].layers);
+    for (const auto e : places[f].crossed)
+      for (const auto node : mesh.elements[e]) give(node, places[f].layers);
+  }
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    layers.at_node[i] =
+        weight[i] > 0 ? layers.at_node[i] / weight[i] : std::numeric_limits<double>::quiet_NaN();
+  return layers;
+}
+
+}  // namespace lamella

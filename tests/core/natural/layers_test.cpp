@@ -1,0 +1,105 @@
+#include "core/natural/layers.h"
+
+#include <gtest/gtest.h>
+
+#include "core/mesh/sample_meshes.h"
+#include "tests/support/sample_surfaces.h"
+
+namespace lamella {
+namespace {
+
+using namespace lamella::testing;
+
+TEST(Layers, StructuredLayersAreCountedExactlyHoweverStretched) {
+  for (const int n : {1, 4, 7})
+    for (const double t : {0.01, 0.1}) {
+      const Mat<3> r = turn(0.4, {1, 1, 2});
+      auto mesh = box_mesh<3>({5, 4, n}, {0, 0, 0}, {1, 1, t});
+      for (auto& p : mesh.points) p = r * p;
+      const auto surface = moved<3>(box_surface({1, 1, t}), r, {0, 0, 0});
+      const auto layers = measure_layers(mesh, surface, n);
+      ASSERT_TRUE(layers.ok());
+      EXPECT_NEAR(layers->stats.mean, n, 1e-6);
+      EXPECT_NEAR(layers->stats.p5, n, 1e-6);
+      EXPECT_NEAR(layers->stats.p50, n, 1e-6);
+      EXPECT_EQ(layers->stats.share_reached, 1);
+      EXPECT_EQ(layers->stats.places, 5u * 4 * 2 * 2);  // top and bottom, not the narrow sides
+      for (std::size_t i = 1; i < mesh.points.size(); ++i) {
+        if (std::isnan(layers->at_node[i])) continue;
+        EXPECT_NEAR(layers->at_node[i], n, 1e-6);
+      }
+      EXPECT_TRUE(std::isnan(layers->at_node[0]));
+      EXPECT_EQ(measure_layers(mesh, surface, n + 1)->stats.share_reached, 0);
+    }
+}
+
+TEST(Layers, QuantilesFollowTheAreaOfEachWall) {
+  // A step: thickness .1 with 2 layers over three quarters, .2 with 4 layers on the last.
+  SimplexMesh<3> mesh = box_mesh<3>({8, 4, 4}, {0, 0, 0}, {2, 1, 0.4});
+  const auto kept = mesh.elements;
+  mesh.elements.clear();
+  for (const auto& e : kept) {
+    Vec<3> c = Vec<3>::Zero();
+    for (const auto v : e) c += mesh.points[v] / 4;
+    if (c[0] > 1.5 || c[2] < 0.2) mesh.elements.push_back(e);
+  }
+  mesh.element_body.assign(mesh.elements.size(), 0);
+  mesh.facets.clear();
+  mesh.facet_group.clear();
+  mesh.facet_face.clear();
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    for (int k = 0; k < 4; ++k) {
+      const auto f = opposite_facet<3>(mesh.elements[e], k);
+      auto nodes = f;
+      std::sort(nodes.begin(), nodes.end());
+      int uses = 0;
+      for (const auto& other : mesh.elements) {
+        int shared = 0;
+        for (const auto v : other) shared += std::count(nodes.begin(), nodes.end(), v) > 0;
+        uses += shared == 3;
+      }
+      if (uses == 1) mesh.facets.push_back(f);
+    }
+  mesh.facet_group.assign(mesh.facets.size(), 0);
+  mesh.facet_face.assign(mesh.facets.size(), 0);
+  const auto surface = cell_surface({std::vector{0.0, 1.5, 2.0}, {0.0, 1.0}, {0.0, 0.2, 0.4}},
+                                    [](int i, int, int k) { return i == 1 || k == 0; });
+  const auto layers = measure_layers(mesh, surface, 3);
+  ASSERT_TRUE(layers.ok());
+  EXPECT_NEAR(layers->stats.p5, 2, 1e-6);
+  EXPECT_NEAR(layers->stats.p50, 2, 1e-6);
+  EXPECT_GT(layers->stats.mean, 2.1);
+  EXPECT_LT(layers->stats.mean, 2.6);
+  EXPECT_NEAR(layers->stats.share_reached, 0.25, 0.05);
+}
+
+TEST(Layers, OneTetrahedronHasNoOppositeWall) {
+  const auto mesh = equilateral_simplex<3>(1);
+  ReferenceSurface<3> surface;
+  for (std::size_t i = 1; i < mesh.points.size(); ++i) surface.points.push_back(mesh.points[i]);
+  for (const auto& f : mesh.facets) surface.facets.push_back({f[0] - 1, f[1] - 1, f[2] - 1});
+  const auto layers = measure_layers(mesh, with_faces(surface), 1);
+  ASSERT_TRUE(layers.ok());
+  EXPECT_EQ(layers->stats.places, 0u);
+  for (const double v : layers->at_node) EXPECT_TRUE(std::isnan(v));
+}
+
+TEST(Layers, ThreadsChangeNothingAndRequestsAreChecked) {
+  const auto mesh = ball_mesh<3>(6, 1);
+  const auto surface = sphere_surface(1, 3);
+  const auto one = measure_layers(mesh, surface, 4, 1);
+  const auto three = measure_layers(mesh, surface, 4, 3);
+  ASSERT_TRUE(one.ok() && three.ok());
+  EXPECT_GT(one->stats.places, 0u);
+  EXPECT_EQ(one->stats.mean, three->stats.mean);
+  EXPECT_EQ(one->stats.p5, three->stats.p5);
+  EXPECT_EQ(measure_layers(mesh, surface, 0).error().code, Code::usage);
+  EXPECT_EQ(measure_layers(mesh, {}, 1).error().code, Code::bad_input);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(measure_layers(mesh, surface, 1, 0, Progress({}, stop.get_token())).error().code,
+            Code::cancelled);
+}
+
+}  // namespace
+}  // namespace lamella

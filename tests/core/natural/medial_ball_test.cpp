@@ -1,0 +1,82 @@
+#include "core/natural/medial_ball.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/sample_surfaces.h"
+
+namespace lamella {
+namespace {
+
+using namespace lamella::testing;
+
+TEST(SmallestInHull, KnownHulls) {
+  EXPECT_NEAR((smallest_in_hull({{1, 0, 0}}) - Vec<3>(1, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR(smallest_in_hull({{1, 0, 0}, {-1, 0, 0}}).norm(), 0, 1e-12);
+  EXPECT_NEAR(smallest_in_hull({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}).norm(), 1 / std::sqrt(3.0),
+              1e-12);
+  EXPECT_NEAR(smallest_in_hull({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}).norm(), 0,
+              1e-12);
+}
+
+TEST(SmallestInHull, NoPointOfTheHullIsNearer) {
+  std::mt19937 rng(1);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 500; ++i) {
+    std::vector<Vec<3>> p(1 + i % 9);
+    for (auto& q : p) q = Vec<3>(normal(rng) + 0.5, normal(rng), normal(rng)).normalized();
+    const Vec<3> g = smallest_in_hull(p);
+    // Optimality: the plane through g, normal to g, has every point on its far side.
+    for (const auto& q : p) EXPECT_GE(q.dot(g), g.squaredNorm() - 1e-6);
+    // Membership, seen from 200 directions.
+    for (int k = 0; k < 200; ++k) {
+      const Vec<3> u = Vec<3>(normal(rng), normal(rng), normal(rng)).normalized();
+      double most = -1e300;
+      for (const auto& q : p) most = std::max(most, q.dot(u));
+      EXPECT_LE(g.dot(u), most + 1e-9);
+    }
+  }
+}
+
+TEST(MedialBall, IsInsideAndTouches) {
+  const auto s = l_surface(0.1);
+  const Locator<3> locator(s);
+  std::mt19937 rng(2);
+  std::uniform_real_distribution<double> u(0, 1);
+  for (int i = 0; i < 300; ++i) {
+    const Vec<3> x{u(rng), u(rng), 0.1 * u(rng)};
+    const MedialBall ball = climb_to_medial_ball(locator, x);
+    EXPECT_NEAR(locator.signed_distance(ball.center), -ball.radius, 1e-12);
+    // A thinner ball would be a false stop at a convex edge; the inner corner allows .1172 at most.
+    EXPECT_GT(2 * ball.radius, 0.09);
+    EXPECT_LT(2 * ball.radius, 0.12);
+  }
+}
+
+TEST(MedialBall, StartsOutsideOnCornersAndOnBladesToo) {
+  const auto box = box_surface({1, 1, 0.1});
+  const Locator<3> plate(box);
+  for (const auto& corner : box.points)
+    EXPECT_NEAR(2 * climb_to_medial_ball(plate, corner).radius, 0.1, 0.01);
+  EXPECT_NEAR(2 * climb_to_medial_ball(plate, {0.5, 0.5, 3}).radius, 0.1, 1e-9);
+  const Locator<3> blade(prism_surface({{0, 0}, {1, 0}, {1, 0.1}}, 1));
+  const double tip = climb_to_medial_ball(blade, {0, 0.5, 0}).radius;
+  EXPECT_GT(tip, 0);
+  EXPECT_LT(tip, 1e-4);
+}
+
+TEST(MedialBall, FineTessellationDoesNotStopTheClimb) {
+  const Locator<3> shell(together(sphere_surface(1, 4), sphere_surface(0.9, 4, {0, 0, 0}, true)));
+  const Locator<3> ball(sphere_surface(1, 4));
+  std::mt19937 rng(3);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 200; ++i) {
+    const Vec<3> u = Vec<3>(normal(rng), normal(rng), normal(rng)).normalized();
+    EXPECT_NEAR(2 * climb_to_medial_ball(shell, u).radius, 0.1, 0.003);
+    EXPECT_GT(climb_to_medial_ball(ball, u).radius, 0.8);
+  }
+}
+
+}  // namespace
+}  // namespace lamella

@@ -1,0 +1,154 @@
+#include "core/natural/natural_metric.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/mesh/sample_meshes.h"
+#include "core/metric/metric.h"
+#include "tests/support/sample_surfaces.h"
+
+namespace lamella {
+namespace {
+
+using namespace lamella::testing;
+
+double quantile(std::vector<double> v, double p) {
+  std::sort(v.begin(), v.end());
+  return v[static_cast<std::size_t>(p * static_cast<double>(v.size() - 1))];
+}
+
+TEST(NaturalMetric, PlatesGetTheirThicknessOverN) {
+  std::mt19937 rng(1);
+  std::uniform_real_distribution<double> u(0, 1);
+  for (const double t : {0.01, 0.02, 0.05})
+    for (const int n : {1, 4, 8}) {
+      const Mat<3> r = turn(0.7, {1, 2, 3});
+      const Vec<3> shift{3, 4, 5};
+      const NaturalDetector detector(moved<3>(box_surface({1, 1, t}, {6, 6, 1}), r, shift));
+      NaturalParams params;
+      params.layers = n;
+      std::vector<double> ratio;
+      for (int i = 0; i < 400; ++i) {
+        // Half of the places on the faces, as mesh nodes are.
+        const double z = i % 4 == 0 ? 0 : i % 4 == 1 ? t : t * u(rng);
+        const auto natural = detector.at(r * Vec<3>(u(rng), u(rng), z) + shift, params);
+        const Vec<3> h = sizes<3>(natural.metric);
+        if (n > 1) ratio.push_back(h[0] * n / t);
+        EXPECT_NEAR(natural.thickness, t, 0.1 * t);
+        EXPECT_NEAR(std::abs(natural.direction.dot(r.col(2))), 1, 0.05);
+      }
+      if (n == 1) continue;  // one layer: the long axes are divided by 4 and may be shorter
+      EXPECT_GT(quantile(ratio, 0.05), 0.98);
+      EXPECT_LT(quantile(ratio, 0.95), 1.01);
+    }
+}
+
+TEST(NaturalMetric, WedgeFollowsItsThicknessDownToTheSmallestSize) {
+  const double slope = 0.1;
+  const NaturalDetector detector(prism_surface({{0, 0}, {1, 0}, {1, slope}}, 1));
+  NaturalParams params;
+  params.h_min = 0.002;
+  const double angle = std::atan(slope);
+  for (double x = 0.05; x < 0.9; x += 0.05) {
+    // The ball that touches the floor at x has the radius x tan(angle / 2).
+    const auto natural = detector.at({x, 0.5, 0}, params);
+    const double exact = 2 * x * std::tan(angle / 2);
+    EXPECT_NEAR(natural.thickness / exact, 1, 0.05);
+    EXPECT_NEAR(sizes<3>(natural.metric)[0], std::max(exact / 4, params.h_min), 0.05 * exact / 4);
+  }
+  EXPECT_NEAR(sizes<3>(detector.at({0, 0.5, 0}, params).metric)[0], params.h_min, 1e-9);
+}
+
+TEST(NaturalMetric, ThickBodiesAreIsotropic) {
+  const NaturalDetector cube(box_surface({1, 1, 1}));
+  const NaturalDetector ball(sphere_surface(1, 3));
+  const Vec<3> in_cube = sizes<3>(cube.at({0.5, 0.4, 0.55}, {}).metric);
+  EXPECT_LT(in_cube[2] / in_cube[0], 1.15);
+  EXPECT_NEAR(in_cube[0], 0.25, 0.02);
+  const Vec<3> in_ball = sizes<3>(ball.at({0, 0, 1}, {}).metric);
+  EXPECT_LT(in_ball[2] / in_ball[0], 1.1);
+  EXPECT_NEAR(in_ball[0], 0.5, 0.05);
+}
+
+TEST(NaturalMetric, CornerOfAnLIsABlockAndItsLegsAreWalls) {
+  const double t = 0.1;
+  const NaturalDetector detector(l_surface(t));
+  const auto leg = detector.at({0.7, 0.5, 0.03}, {});
+  EXPECT_NEAR(leg.thickness, t, 1e-3);
+  EXPECT_NEAR(std::abs(leg.direction[2]), 1, 0.01);
+  const Vec<3> h = sizes<3>(leg.metric);
+  EXPECT_GT(h[1] / h[0], 4);
+  // In the corner both walls are divided: two short axes, one long.
+  const auto corner = detector.at({0.05, 0.5, 0.05}, {});
+  const auto corner_sizes = spectrum<3>(corner.metric);
+  EXPECT_LT(std::sqrt(corner_sizes.values[2] / corner_sizes.values[1]), 1.6);
+  EXPECT_NEAR(corner.thickness, t, 0.02);
+}
+
+TEST(NaturalMetric, CurvedWallsPointAcross) {
+  const NaturalDetector tube(tube_surface(0.95, 1, 1, 200, 10));
+  for (const double phi : {0.1, 1.0, 2.2, 4.5}) {
+    const Vec<3> radial{std::cos(phi), std::sin(phi), 0};
+    const auto natural = tube.at(0.97 * radial + Vec<3>(0, 0, 0.5), {});
+    EXPECT_NEAR(natural.thickness, 0.05, 0.0005);
+    EXPECT_NEAR(std::abs(natural.direction.dot(radial)), 1, 0.005);
+    // Seen within the wall, the tube is longer along its axis than around.
+    const auto s = spectrum<3>(natural.metric);
+    EXPECT_NEAR(std::abs(s.vectors(2, 0)), 1, 0.05);
+  }
+}
+
+TEST(NaturalMetric, FieldIsThePointwiseAnswerOnAnyNumberOfThreads) {
+  const NaturalDetector detector(box_surface({1, 1, 1}));
+  const auto mesh = box_mesh<3>({3, 4, 2}, {0, 0, 0}, {1, 1, 1});
+  NaturalParams params;
+  params.threads = 1;
+  double reported = 0;
+  const auto one =
+      detector.field(mesh, params, Progress([&](double f, std::string_view) { reported = f; }));
+  params.threads = 3;
+  const auto three = detector.field(mesh, params);
+  ASSERT_TRUE(one.ok() && three.ok());
+  EXPECT_EQ(reported, 1);
+  ASSERT_EQ(one->metric.size(), mesh.points.size());
+  for (std::size_t i = 1; i < mesh.points.size(); ++i) {
+    EXPECT_EQ(one->metric[i], three->metric[i]);
+    EXPECT_EQ(one->metric[i], detector.at(mesh.points[i], params).metric);
+    EXPECT_EQ(one->thickness[i], three->thickness[i]);
+    EXPECT_TRUE(is_spd<3>(one->metric[i]));
+    EXPECT_NEAR(one->direction[i].norm(), 1, 1e-9);
+  }
+}
+
+TEST(NaturalMetric, SizesStayWithinTheirBounds) {
+  const NaturalDetector detector(box_surface({1, 1, 0.01}));
+  NaturalParams params;
+  params.h_min = 0.005;
+  params.h_max = 0.03;
+  const Vec<3> h = sizes<3>(detector.at({0.5, 0.5, 0}, params).metric);
+  EXPECT_NEAR(h[0], 0.005, 1e-12);
+  EXPECT_NEAR(h[2], 0.03, 1e-12);
+}
+
+TEST(NaturalMetric, RefusesWhatMakesNoSenseAndStopsWhenAsked) {
+  const NaturalDetector detector(box_surface({1, 1, 1}));
+  const auto mesh = unit_box<3>(2);
+  NaturalParams none;
+  none.layers = 0;
+  EXPECT_EQ(detector.field(mesh, none).error().code, Code::usage);
+  NaturalParams crossed;
+  crossed.h_min = 2;
+  crossed.h_max = 1;
+  EXPECT_EQ(detector.field(mesh, crossed).error().code, Code::usage);
+  NaturalParams negative;
+  negative.alpha = -1;
+  EXPECT_EQ(detector.field(mesh, negative).error().code, Code::usage);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(detector.field(mesh, {}, Progress({}, stop.get_token())).error().code, Code::cancelled);
+  EXPECT_EQ(NaturalDetector(ReferenceSurface<3>{}).field(mesh, {}).error().code, Code::bad_input);
+}
+
+}  // namespace
+}  // namespace lamella
