@@ -32,7 +32,8 @@ namespace lamella {
 namespace {
 
 constexpr double kFeatureAngle = 0.35;  // radians between the outward normals of two faces
-constexpr double kKink = 0.6;           // radians between the tangents of two feature curves
+constexpr double kVolumeTolerance = 3e-3;
+constexpr double kKink = 0.6;  // radians between the tangents of two feature curves
 
 Vec<3> to_vec(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
 
@@ -310,6 +311,20 @@ std::string finding(Joiner& joined) {
   return {};
 }
 
+struct Attempt {
+  IMeshTools_MeshAlgoType algorithm;
+  double finer;  // share of the chord tolerance
+};
+
+// Delabella is the quick one, but loses points inside some faces; Watson is a second opinion.
+constexpr Attempt kAttempts[] = {
+    {IMeshTools_MeshAlgoType_Delabella, 1},    {IMeshTools_MeshAlgoType_Watson, 1},
+    {IMeshTools_MeshAlgoType_Delabella, 0.5},  {IMeshTools_MeshAlgoType_Watson, 0.5},
+    {IMeshTools_MeshAlgoType_Delabella, 0.25}, {IMeshTools_MeshAlgoType_Watson, 0.25},
+    {IMeshTools_MeshAlgoType_Delabella, 0.1},  {IMeshTools_MeshAlgoType_Watson, 0.1}};
+
+constexpr std::size_t kMaxRetryFacets = 200'000;
+
 double diagonal(const TopoDS_Shape& shape) {
   Bnd_Box box;
   BRepBndLib::Add(shape, box, Standard_False);
@@ -330,11 +345,10 @@ Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadPar
 
   const double chord = params.chord_tolerance.value_or(1e-3 * diagonal(solid));
   std::string problem;
-  constexpr double kFiner[] = {1, 0.5, 0.25, 0.1};
-  for (std::size_t attempt = 0; attempt < std::size(kFiner); ++attempt) {
+  for (const Attempt& attempt : kAttempts) {
     IMeshTools_Parameters mesh;
-    mesh.MeshAlgo = IMeshTools_MeshAlgoType_Delabella;
-    mesh.Deflection = chord * kFiner[attempt];
+    mesh.MeshAlgo = attempt.algorithm;
+    mesh.Deflection = chord * attempt.finer;
     mesh.DeflectionInterior = mesh.Deflection;
     mesh.Angle = params.angle_tolerance;
     mesh.AngleInterior = params.angle_tolerance;
@@ -345,16 +359,29 @@ Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadPar
     const BRepMesh_IncrementalMesh run(solid, mesh, bridge->Start());
     if (progress.cancelled()) return cancelled_error();
     Joiner joined(solid);
-    problem = finding(joined);
-    if (!problem.empty()) continue;
+    std::string here = finding(joined);
+    if (here.empty() && joined.deviation() > 1.5 * chord) {
+      here = "its triangles lie " + short_number(joined.deviation()) + " mm off the exact surface";
+    }
+    const double off = enclosed_measure(joined.surface()) / part.cad_volume - 1;
+    if (here.empty() && std::abs(off) > kVolumeTolerance) {
+      here = "its triangles enclose a volume that is " + short_number(100 * off) + " % off";
+    }
+    if (problem.empty()) problem = here;
+    if (!here.empty()) {
+      // Finer triangles of a large model that crosses itself take minutes and rarely help.
+      if (joined.surface().facets.size() > kMaxRetryFacets) break;
+      continue;
+    }
 
     part.surface = std::move(joined.surface());
     drop_unused_points(part.surface);
     for (const auto& color : info.face_colors) part.surface.faces.push_back({"", color});
     part.chord_error = std::max(mesh.Deflection, joined.deviation());
-    if (attempt > 0) {
+    if (attempt.finer < 1) {
       part.notes.push_back("Tessellated with a chord tolerance of " +
-                           short_number(mesh.Deflection) + " mm: coarser triangles cross.");
+                           short_number(mesh.Deflection) + " mm, as with a coarser one " + problem +
+                           ".");
     }
     progress.report(1);
     return part;

@@ -63,7 +63,7 @@ TEST_P(RealStep, IsWatertightAndKeepsItsVolume) {
     EXPECT_EQ(find_self_intersections(s).pairs, 0);
     EXPECT_EQ(s.facet_face.size(), s.facets.size());
     EXPECT_GT(part.chord_error, 0);
-    EXPECT_NEAR(enclosed_measure(s), part.cad_volume, 5e-3 * part.cad_volume) << part.name;
+    EXPECT_NEAR(enclosed_measure(s), part.cad_volume, 3e-3 * part.cad_volume) << part.name;
     // A corner lies on a feature.
     std::vector<int> uses(s.points.size());
     for (const auto& e : s.feature_edges) {
@@ -94,6 +94,8 @@ INSTANTIATE_TEST_SUITE_P(
                     RealPart{"nist_ctc_03_asme1_ap242-e2.stp", 1, 3.3212e5, 120},
                     RealPart{"lego_3xaa_battery_case.step", 5, 35885, 600},
                     RealPart{"jst_xh_s4b_header.step", 1, 278.25, 165},
+                    RealPart{"prusa_mini_display_box.stp", 1, 24951, 183},
+                    RealPart{"desktop_top_cover.stp", 1, 41278, 492},
                     RealPart{"vhb_din_mount.step", 1, 2687.1, 152}),
     [](const auto& each) {
       std::string name = std::filesystem::path(each.param.file).stem().string();

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.h"
+
+namespace lamella {
+
+/// Names of the parts made by code: plate, ribbed_tray, curved_shell, t_junction, twisted_tube.
+std::vector<std::string> sample_names();
+
+/// Writes one of them as STEP AP214 in mm. The twisted tube has two solids, the tube and the block
+/// around it. Errors: usage (unknown name), io, failed.
+Result<void> write_sample(std::string_view name, const std::filesystem::path& file);
+
+}  // namespace lamella

@@ -1,0 +1,68 @@
+#include "core/cad/sample_parts.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/cad/load_parts.h"
+#include "core/geometry/soup.h"
+#include "tests/support/temporary_folder.h"
+
+namespace lamella {
+namespace {
+
+class EverySample : public testing::TestWithParam<std::string> {};
+
+TEST_P(EverySample, IsWrittenAndReadBack) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / (GetParam() + ".step");
+  const auto written = write_sample(GetParam(), file);
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  EXPECT_EQ(folder.names(), std::vector<std::string>{GetParam() + ".step"});
+  const auto parts = load_parts(file);
+  ASSERT_TRUE(parts.ok()) << parts.error().message;
+  EXPECT_EQ(parts->size(), GetParam() == "twisted_tube" ? 2 : 1);
+  for (const Part& part : *parts) {
+    EXPECT_TRUE(check_closed(part.surface).ok());
+    EXPECT_NEAR(enclosed_measure(part.surface), part.cad_volume, 3e-3 * part.cad_volume);
+    EXPECT_GE(part.color[0], 0);
+    EXPECT_LT(part.surface.facets.size(), 20000);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, EverySample, testing::ValuesIn(sample_names()),
+                         [](const auto& each) { return each.param; });
+
+TEST(SampleParts, HaveTheVolumesOfTheirDrawings) {
+  const test::TemporaryFolder folder;
+  const auto volume = [&](const std::string& name, std::size_t part) {
+    const auto file = folder / (name + ".step");
+    EXPECT_TRUE(write_sample(name, file).ok());
+    const auto parts = load_parts(file);
+    return parts.ok() && parts->size() > part ? (*parts)[part].cad_volume : 0;
+  };
+  const double pi = 3.14159265358979323846;
+  // 60 x 40 x 2, corners of radius 5, a hole of radius 4.
+  EXPECT_NEAR(volume("plate", 0), 2 * (2400 - (4 - pi) * 25 - 16 * pi), 1e-6 * 4656);
+  // Two fillets of radius 1 along 60 mm.
+  EXPECT_NEAR(volume("t_junction", 0), 40 * 60 * 3 + 2 * 60 * 22 + 2 * 60 * (1 - pi / 4),
+              1e-6 * 9866);
+  // Pappus: the area of the section times the way of its center.
+  const double center = 30 + 2.0 / 3 * (125000 - 110592) / (2500 - 2304) * std::sin(0.7) / 0.7;
+  EXPECT_NEAR(volume("curved_shell", 0), 0.7 * (2500 - 2304) * 0.9 * center, 1e-6 * 9274);
+}
+
+TEST(SampleParts, UnknownNamesAndFoldersAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto unknown = write_sample("teapot", folder / "x.step");
+  ASSERT_FALSE(unknown.ok());
+  EXPECT_EQ(unknown.error().code, Code::usage);
+  EXPECT_NE(unknown.error().hint.find("ribbed_tray"), std::string::npos);
+  const auto nowhere = write_sample("plate", folder.path() / "none" / "x.step");
+  ASSERT_FALSE(nowhere.ok());
+  EXPECT_EQ(nowhere.error().code, Code::io);
+  EXPECT_TRUE(folder.names().empty());
+}
+
+}  // namespace
+}  // namespace lamella
