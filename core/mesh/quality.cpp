@@ -22,7 +22,7 @@ ElementQuality element_quality(const Corners<D>& p, const Metric<D>& m) {
   const double size_d = std::pow(mean_square, 0.5 * D);  // h^D of (3.4)
   const double unit_measures =
       std::abs(measure) * std::sqrt(std::max(0.0, m.determinant())) / unit_simplex_measure(D);
-  const double sign = measure > 0 ? 1 : -1;
+  const double sign = measure < 0 ? -1 : 1;
 
   ElementQuality q;
   if (!(mean_square > 0)) return q;

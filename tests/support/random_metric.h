@@ -4,7 +4,7 @@
 
 #include "core/metric/metric.h"
 
-namespace lamella {
+namespace lamella::test {
 
 /// Uniform in [low, high], the same on every platform.
 inline double uniform(std::mt19937& rng, double low, double high) {
@@ -36,4 +36,4 @@ Metric<D> random_metric(std::mt19937& rng, double ratio) {
   return metric_from_sizes<D>(random_rotation<D>(rng), h);
 }
 
-}  // namespace lamella
+}  // namespace lamella::test

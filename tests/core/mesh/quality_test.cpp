@@ -24,7 +24,7 @@ class QualityTest : public testing::Test {
   Corners<kDim> random_simplex() {
     Corners<kDim> p;
     do
-      for (auto& x : p) x = random_vector<kDim>(rng);
+      for (auto& x : p) x = test::random_vector<kDim>(rng);
     while (signed_measure<kDim>(p) < 0.02);
     return p;
   }
@@ -41,7 +41,7 @@ TYPED_TEST_SUITE(QualityTest, Dimensions);
 TYPED_TEST(QualityTest, EveryCriterionIsOneForTheUnitSimplexOfAnyMetric) {
   constexpr int D = TypeParam::value;
   for (int trial = 0; trial < 50; ++trial) {
-    const Metric<D> m = random_metric<D>(this->rng, 1000);
+    const Metric<D> m = test::random_metric<D>(this->rng, 1000);
     const auto p = this->mapped(this->equilateral(), metric_power<D>(m, -0.5));
     const ElementQuality q = element_quality<D>(p, m);
     EXPECT_NEAR(q.shape, 1, 1e-7);
@@ -67,9 +67,9 @@ TYPED_TEST(QualityTest, CriteriaAreInvariantUnderAnAffineMapOfMeshAndMetric) {
   constexpr int D = TypeParam::value;
   for (int trial = 0; trial < 50; ++trial) {
     const auto p = this->random_simplex();
-    const Metric<D> m = random_metric<D>(this->rng, 3);
-    Mat<D> a =
-        metric_power<D>(random_metric<D>(this->rng, 30), 0.5) * random_rotation<D>(this->rng);
+    const Metric<D> m = test::random_metric<D>(this->rng, 3);
+    Mat<D> a = metric_power<D>(test::random_metric<D>(this->rng, 30), 0.5) *
+               test::random_rotation<D>(this->rng);
     const Metric<D> back = a.inverse().transpose() * m * a.inverse();
     const auto q = this->mapped(p, a);
     const ElementQuality before = element_quality<D>(p, m), after = element_quality<D>(q, back);

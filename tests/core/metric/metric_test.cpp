@@ -19,7 +19,7 @@ TYPED_TEST_SUITE(MetricTest, Dimensions);
 TYPED_TEST(MetricTest, PowersMultiplyLikePowers) {
   constexpr int D = TypeParam::value;
   for (int trial = 0; trial < 20; ++trial) {
-    const Metric<D> m = random_metric<D>(this->rng, 30);
+    const Metric<D> m = test::random_metric<D>(this->rng, 30);
     const Mat<D> root = metric_power<D>(m, 0.5);
     EXPECT_LT((root * root - m).norm(), 1e-10 * m.norm());
     EXPECT_LT((metric_power<D>(m, -1) * m - Mat<D>::Identity()).norm(), 1e-9);
@@ -34,7 +34,7 @@ TYPED_TEST(MetricTest, SizesComeBackFromTheMetricOfAnyAxes) {
     Vec<D> h;
     for (int k = 0; k < D; ++k) h[k] = std::pow(10.0, -4 + k);  // 1e-4 .. thinner by 10 an axis
     h[D - 1] = 1;
-    const Metric<D> m = metric_from_sizes<D>(random_rotation<D>(this->rng), h);
+    const Metric<D> m = metric_from_sizes<D>(test::random_rotation<D>(this->rng), h);
     const Vec<D> back = sizes<D>(m);
     // Rounding of M itself leaves 1e-16 * 1e8 of the smallest eigenvalue.
     for (int k = 0; k < D; ++k) EXPECT_NEAR(back[k] / h[k], 1, 1e-6);
@@ -62,9 +62,9 @@ TYPED_TEST(MetricTest, RefusesWhatIsNoMetric) {
 
 TYPED_TEST(MetricTest, PointsOfTheUnitBallHaveUnitLength) {
   constexpr int D = TypeParam::value;
-  const Metric<D> m = random_metric<D>(this->rng, 100);
+  const Metric<D> m = test::random_metric<D>(this->rng, 100);
   for (int trial = 0; trial < 20; ++trial) {
-    const Vec<D> u = random_vector<D>(this->rng).normalized();
+    const Vec<D> u = test::random_vector<D>(this->rng).normalized();
     EXPECT_NEAR(metric_length<D>(unit_ball_point<D>(m, u), m), 1, 1e-8);
   }
 }
@@ -74,7 +74,7 @@ TYPED_TEST(MetricTest, ASimplexIsUnitAndEquilateralInItsOwnMetric) {
   for (int trial = 0; trial < 20; ++trial) {
     std::array<Vec<D>, D + 1> p;
     do
-      for (auto& x : p) x = random_vector<D>(this->rng);
+      for (auto& x : p) x = test::random_vector<D>(this->rng);
     while (std::abs(signed_measure<D>(p)) < 0.01);
     const Metric<D> m = simplex_metric<D>(p);
     EXPECT_TRUE(is_spd<D>(m));

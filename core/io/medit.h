@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <variant>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/mesh/simplex_mesh.h"
+#include "core/metric/metric.h"
+
+namespace lamella {
+
+/// A mesh whose dimension only the file knows.
+using AnyMesh = std::variant<SimplexMesh<2>, SimplexMesh<3>>;
+
+/// A Medit ASCII .mesh. Tetrahedra make it 3D with the Triangles as boundary; without any, the
+/// Triangles of a planar file are the elements and the Edges the boundary.
+///
+/// Nodes keep their numbers, used or not, so that a .sol file fits. The reference of an element
+/// names its body and that of a boundary face its group: reference r reads as the name "ref r", and
+/// facet_face is r. Boundary faces that the file does not list are added with reference 0 (all in
+/// the group "walls" when it lists none); listed faces that are no boundary are dropped. The facets
+/// are turned outward; elements are left as they are, for `inspect` to judge. Unknown sections are
+/// skipped.
+/// Errors: io, bad_input (empty, binary, not Medit, truncated, index out of range, no elements),
+/// with the line; cancelled.
+Result<AnyMesh> read_medit(const std::filesystem::path& file, const Progress& progress = {});
+/// The same for a caller that knows the dimension. Error: bad_input when the file has the other.
+template <int D>
+Result<SimplexMesh<D>> read_medit(const std::filesystem::path& file, const Progress& progress = {});
+
+/// Writes what `read_medit` reads, atomically. A body or group called "ref r" gets reference r when
+/// all of its kind are; otherwise references are positions from 1. Errors: io, cancelled.
+template <int D>
+Result<void> write_medit(const SimplexMesh<D>& mesh, const std::filesystem::path& file,
+                         const Progress& progress = {});
+
+/// A nodal metric from a .sol file: sizes h (type 1, read as I/h^2) or metrics (type 3, in the
+/// order m11 m12 m22 m13 m23 m33). `nodes` is the node count of the mesh it belongs to.
+/// Errors: io, bad_input (not a .sol, truncated, other node count or dimension, a vector field, a
+/// value that is no metric), with the line or the node; cancelled.
+template <int D>
+Result<MetricField<D>> read_sol(const std::filesystem::path& file, std::size_t nodes,
+                                const Progress& progress = {});
+
+/// Writes a nodal metric, entry 0 left out, atomically. Errors: io, cancelled.
+template <int D>
+Result<void> write_sol(const MetricField<D>& metric, const std::filesystem::path& file,
+                       const Progress& progress = {});
+
+}  // namespace lamella

@@ -1,0 +1,144 @@
+#include "core/mesh/check.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/mesh/adjacency.h"
+#include "core/mesh/quality.h"
+
+namespace lamella {
+namespace {
+
+/// Calls work(i) for 0 <= i < n on all cores; stops early when cancelled. Each call writes its own
+/// entries only, so that the result does not depend on the threads.
+template <class Work>
+void for_all(std::size_t n, const Progress& progress, Work work) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 1024), [&](const auto& range) {
+    if (progress.cancelled()) return;
+    for (std::size_t i = range.begin(); i != range.end(); ++i) work(i);
+  });
+}
+
+/// Criteria that are summed up over the elements, [element].
+struct ElementSamples {
+  std::vector<double> mean_ratio, mean_ratio_mean, shape, quality, frobenius, invariant, aspect;
+  std::vector<char> flat;
+  explicit ElementSamples(std::size_t n)
+      : mean_ratio(n),
+        mean_ratio_mean(n),
+        shape(n),
+        quality(n),
+        frobenius(n),
+        invariant(n),
+        aspect(n),
+        flat(n) {}
+};
+
+/// The entries of elements that are not flat.
+std::vector<double> solid(const std::vector<double>& values, const std::vector<char>& flat) {
+  std::vector<double> kept;
+  kept.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!flat[i]) kept.push_back(values[i]);
+  return kept;
+}
+
+}  // namespace
+
+Stats stats_of(std::vector<double> sample) {
+  Stats s;
+  s.count = sample.size();
+  if (sample.empty()) return s;
+  for (const double v : sample) s.mean += v;
+  s.mean /= static_cast<double>(s.count);
+  std::sort(sample.begin(), sample.end());
+  const auto at = [&](double share) {
+    return sample[static_cast<std::size_t>(share * static_cast<double>(s.count - 1))];
+  };
+  s.min = sample.front();
+  s.p1 = at(0.01);
+  s.p5 = at(0.05);
+  s.p25 = at(0.25);
+  s.p50 = at(0.5);
+  s.p75 = at(0.75);
+  s.p95 = at(0.95);
+  s.p99 = at(0.99);
+  s.max = sample.back();
+  return s;
+}
+
+template <int D>
+Result<CheckReport> check(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
+                          const Progress& progress) {
+  if (metric.size() != mesh.points.size())
+    return Error{Code::bad_input,
+                 "The metric has " + std::to_string(metric.empty() ? 0 : metric.size() - 1) +
+                     " nodal values, the mesh has " + std::to_string(mesh.node_count()) + " nodes.",
+                 "Give the metric that was made for this mesh."};
+  auto topology = inspect(mesh, progress.portion(0, 0.4));
+  if (!topology) return topology.error();
+  if (topology->bad_arrays + topology->bad_indices + topology->bad_points > 0)
+    return Error{Code::bad_input, "The mesh cannot be measured: " + topology->first_finding, ""};
+  CheckReport report;
+  report.mesh = std::move(*topology);
+  report.dimension = D;
+
+  const std::size_t n = mesh.elements.size();
+  ElementSamples samples(n);
+  for_all(n, progress, [&](std::size_t i) {
+    const auto& e = mesh.elements[i];
+    const auto p = mesh.corners(e);
+    const Metric<D> mean = mean_metric<D>(metric, e);
+    const ElementQuality q = element_quality<D>(p, mean);
+    samples.shape[i] = q.shape;
+    samples.quality[i] = q.quality;
+    samples.mean_ratio_mean[i] = q.mean_ratio;
+    samples.mean_ratio[i] = element_quality<D>(p, densest_metric<D>(metric, e)).mean_ratio;
+    samples.flat[i] = signed_measure<D>(p) == 0;
+    if (samples.flat[i]) return;
+    const Conformity c = conformity<D>(p, mean);
+    samples.frobenius[i] = c.frobenius;
+    samples.invariant[i] = c.invariant;
+    samples.aspect[i] = aspect_ratio<D>(p);
+  });
+  if (progress.cancelled()) return cancelled_error();
+  progress.report(0.7);
+
+  const auto edges = unique_edges<D>(mesh.elements, mesh.points.size());
+  std::vector<double> lengths(edges.size());
+  for_all(edges.size(), progress, [&](std::size_t i) {
+    const auto [a, b] = edges[i];
+    lengths[i] = edge_length<D>(mesh.points[b] - mesh.points[a], metric[a], metric[b]);
+  });
+  if (progress.cancelled()) return cancelled_error();
+  progress.report(0.8);
+
+  report.edges = edges.size();
+  const auto unit = std::count_if(lengths.begin(), lengths.end(), is_unit_length);
+  if (!lengths.empty())
+    report.unit_edges = static_cast<double>(unit) / static_cast<double>(lengths.size());
+  report.flat = static_cast<std::size_t>(std::count(samples.flat.begin(), samples.flat.end(), 1));
+  report.allocation = allocation_factor(mesh, metric);
+  report.edge_length = stats_of(std::move(lengths));
+  report.mean_ratio = stats_of(std::move(samples.mean_ratio));
+  report.mean_ratio_mean = stats_of(std::move(samples.mean_ratio_mean));
+  report.shape = stats_of(std::move(samples.shape));
+  report.quality = stats_of(std::move(samples.quality));
+  if (progress.cancelled()) return cancelled_error();
+  report.conformity = stats_of(solid(samples.frobenius, samples.flat));
+  report.conformity_invariant = stats_of(solid(samples.invariant, samples.flat));
+  report.aspect_ratio = stats_of(solid(samples.aspect, samples.flat));
+  progress.report(1);
+  return report;
+}
+
+template Result<CheckReport> check<2>(const SimplexMesh<2>&, const MetricField<2>&,
+                                      const Progress&);
+template Result<CheckReport> check<3>(const SimplexMesh<3>&, const MetricField<3>&,
+                                      const Progress&);
+template Result<CheckReport> check<4>(const SimplexMesh<4>&, const MetricField<4>&,
+                                      const Progress&);
+
+}  // namespace lamella
