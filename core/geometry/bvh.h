@@ -232,12 +232,17 @@ struct Entry {
 inline int push(Entry* stack, int top, Float4 key, const std::int32_t* child, float bound) {
   alignas(16) float k4[4];
   __builtin_memcpy(k4, &key, sizeof k4);
+  // Appended without branches, then sorted: mostly none or one is left to sort.
   const int bottom = top;
   for (int k = 0; k < 4; ++k) {
-    if (!(k4[k] < bound)) continue;
-    int at = top++;
-    for (; at > bottom && stack[at - 1].key < k4[k]; --at) stack[at] = stack[at - 1];
-    stack[at] = {k4[k], child[k]};
+    stack[top] = {k4[k], child[k]};
+    top += k4[k] < bound;
+  }
+  for (int i = bottom + 1; i < top; ++i) {
+    const Entry e = stack[i];
+    int at = i;
+    for (; at > bottom && stack[at - 1].key < e.key; --at) stack[at] = stack[at - 1];
+    stack[at] = e;
   }
   return top;
 }

@@ -98,8 +98,11 @@ struct RayTest<3> {
       v[k] = x[0][k] * y[2][k] - y[0][k] * x[2][k];
       w[k] = x[1][k] * y[0][k] - y[1][k] * x[0][k];
     }
+    double outside[4];
+    for (int k = 0; k < 4; ++k) outside[k] = std::max(std::max(u[k], v[k]), w[k]);
+    if (std::min(std::min(outside[0], outside[1]), std::min(outside[2], outside[3])) > 0) return;
     for (int k = 0; k < 4; ++k) {
-      if (u[k] > 0 || v[k] > 0 || w[k] > 0) continue;  // outside, or entering the body
+      if (outside[k] > 0) continue;  // beside the facet, or entering the body
       const double det = u[k] + v[k] + w[k];
       if (!(det < 0)) continue;
       const double t = sz * (u[k] * z[0][k] + v[k] * z[1][k] + w[k] * z[2][k]) / det;

@@ -5,11 +5,11 @@
 namespace lamella {
 namespace {
 
-constexpr double kSkin = 1e-4;     // of the diagonal: a start this deep is inside
-constexpr double kContact = 1.1;   // of the radius: facets as near as this are touched
-constexpr double kDistinct = 0.9;  // cosine above which two contacts are one
-constexpr double kOpposite = 0.4;  // hull nearer to the center than this: the ball is medial
-constexpr double kGrowth = 0.3;    // of the ideal growth of the radius that a step must reach
+constexpr double kSkin = 1e-4;      // of the diagonal: a start this deep is inside
+constexpr double kContact = 1.1;    // of the radius: facets as near as this are touched
+constexpr double kDistinct = 0.9;   // cosine above which two contacts are one
+constexpr double kOpposite = 0.26;  // hull nearer than this: medial, or a wedge under 30 degrees
+constexpr double kGrowth = 0.3;     // of the ideal growth of the radius that a step must reach
 constexpr int kRounds = 60;
 constexpr int kTrials = 12;
 constexpr double kFloor = 1e-6;  // of the diagonal: smallest radius, where the body has none

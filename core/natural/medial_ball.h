@@ -17,7 +17,7 @@ struct MedialBall {
 /// inside, just below its foot. The answer depends on the surface only.
 ///
 /// Contacts are facets, re-measured at every step. They count as opposite when the hull of their
-/// directions comes nearer than 0.4 to the center: walls meeting at less than about 47 degrees are
+/// directions comes nearer than 0.26 to the center: walls meeting at less than about 30 degrees are
 /// one thin wall. The surface must not be empty.
 MedialBall climb_to_medial_ball(const Locator<3>& surface, const Vec<3>& x);
 

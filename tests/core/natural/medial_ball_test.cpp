@@ -66,6 +66,14 @@ TEST(MedialBall, StartsOutsideOnCornersAndOnBladesToo) {
   EXPECT_LT(tip, 1e-4);
 }
 
+TEST(MedialBall, KnifeEdgesOfAChamferAreNoThinWall) {
+  // Chamfers of thick bodies end in edges of 45 degrees: the body is as thick there as elsewhere.
+  const Locator<3> chamfer(prism_surface({{0, 0}, {1, 0}, {1, 1}}, 2));
+  const double inscribed = 2 - std::sqrt(2.0);
+  for (const double y : {0.6, 1.0, 1.4})
+    EXPECT_NEAR(2 * climb_to_medial_ball(chamfer, {0, y, 0}).radius, inscribed, 0.1 * inscribed);
+}
+
 TEST(MedialBall, FineTessellationDoesNotStopTheClimb) {
   const Locator<3> shell(together(sphere_surface(1, 4), sphere_surface(0.9, 4, {0, 0, 0}, true)));
   const Locator<3> ball(sphere_surface(1, 4));
