@@ -8,6 +8,8 @@
 #include "core/cad/occt_guard.h"
 #include "core/cad/step_reader.h"
 #include "core/cad/tessellate.h"
+#include "core/geometry/improve_triangles.h"
+#include "core/geometry/self_intersection.h"
 #include "core/geometry/soup.h"
 #include "core/io/stl.h"
 
@@ -43,6 +45,33 @@ Result<std::vector<Part>> load_step(const std::filesystem::path& file, const Loa
   return parts;
 }
 
+/// Takes the needles out where that leaves the surface sound, and tells of facets that cross.
+void improve(Part& part) {
+  Vec<3> low = part.surface.points[0];
+  Vec<3> high = low;
+  for (const Vec<3>& p : part.surface.points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double size = (high - low).norm();
+  const SelfIntersections before = find_self_intersections(part.surface);
+  if (before.pairs > 0) {
+    part.notes.push_back(std::to_string(before.pairs) +
+                         " pairs of facets cross each other: meshing may fail there.");
+    return;
+  }
+  ImproveParams params;
+  params.tolerance = 1e-5 * size;
+  params.shortest_edge = 2e-3 * size;
+  ReferenceSurface<3> better = part.surface;
+  improve_triangles(better, params);
+  if (!check_closed(better).ok() || find_self_intersections(better).pairs > 0) return;
+  // Slivers have no normal: only now do their neighbors show their features.
+  find_features(better, SoupParams{}.feature_angle);
+  part.surface = std::move(better);
+  part.chord_error = params.tolerance;
+}
+
 Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const LoadParams& params,
                                    const Progress& progress) {
   auto soup = read_stl(file, progress.portion(0, 0.4, "Reading STL"));
@@ -70,12 +99,14 @@ Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const Load
     if (surfaces->size() > 1) part.name += " " + std::to_string(parts.size() + 1);
     part.cad_volume = enclosed_measure(surface);
     part.surface = std::move(surface);
+    if (progress.cancelled()) return cancelled_error();
+    improve(part);
     parts.push_back(std::move(part));
   }
   if (parts.size() > 1) {
     notes.push_back("The file holds " + std::to_string(parts.size()) + " separate bodies.");
   }
-  parts[0].notes = std::move(notes);
+  parts[0].notes.insert(parts[0].notes.begin(), notes.begin(), notes.end());
   return parts;
 }
 

@@ -25,6 +25,7 @@
 
 #include "core/cad/occt_progress.h"
 #include "core/geometry/edge_table.h"
+#include "core/geometry/improve_triangles.h"
 #include "core/geometry/self_intersection.h"
 #include "core/geometry/soup.h"
 
@@ -311,6 +312,18 @@ std::string finding(Joiner& joined) {
   return {};
 }
 
+/// Takes the needles out where the surface stays sound; returns how far it may have moved, mm.
+double improve(ReferenceSurface<3>& surface, double chord) {
+  ImproveParams params;
+  params.tolerance = 0.1 * chord;
+  params.shortest_edge = 2 * chord;
+  ReferenceSurface<3> better = surface;
+  improve_triangles(better, params);
+  if (!check_closed(better).ok() || find_self_intersections(better).pairs > 0) return 0;
+  surface = std::move(better);
+  return params.tolerance;
+}
+
 struct Attempt {
   IMeshTools_MeshAlgoType algorithm;
   double finer;  // share of the chord tolerance
@@ -376,8 +389,9 @@ Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadPar
 
     part.surface = std::move(joined.surface());
     drop_unused_points(part.surface);
+    const double moved = improve(part.surface, chord);
     for (const auto& color : info.face_colors) part.surface.faces.push_back({"", color});
-    part.chord_error = std::max(mesh.Deflection, joined.deviation());
+    part.chord_error = std::max(mesh.Deflection, joined.deviation()) + moved;
     if (attempt.finer < 1) {
       part.notes.push_back("Tessellated with a chord tolerance of " +
                            short_number(mesh.Deflection) + " mm, as with a coarser one " + problem +
