@@ -30,8 +30,8 @@ struct GenerateParams {
 /// Algorithm 2.1: the mesh of the domain bounded by `surface`, by topological optimization towards
 /// the minimal volume (2.20), which is also the certificate of the result. Boundary facets as for
 /// VolumeMesher. Works for D = 2, 3 (4 with a closed boundary of tetrahedra).
-/// Errors: bad_input (surface not closed or wrongly wound), failed (stalled; the message tells the
-/// excess volume and where), cancelled.
+/// Errors: bad_input (surface not closed or wrongly wound), failed (the surface touches or, in 3D,
+/// crosses itself; or stalled: the message tells the excess volume and where), cancelled.
 template <int D>
 Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface,
                                 const GenerateParams& params = {}, const Progress& progress = {});
