@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <random>
 
+#include "core/geometry/locator.h"
+#include "core/geometry/soup.h"
+#include "core/io/stl.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/metric/metric.h"
 #include "tests/support/sample_surfaces.h"
@@ -119,6 +123,35 @@ TEST(NaturalMetric, FieldIsThePointwiseAnswerOnAnyNumberOfThreads) {
     EXPECT_TRUE(is_spd<3>(one->metric[i]));
     EXPECT_NEAR(one->direction[i].norm(), 1, 1e-9);
   }
+}
+
+TEST(NaturalMetric, RealPartHasTheWallsItsDrawingShows) {
+  // A hinge of plates 5 mm and ears 2 mm thick, coarsely tessellated.
+  const std::filesystem::path file =
+      std::filesystem::path(LAMELLA_REAL_PARTS) / "netgen_hinge_ascii.stl";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here.";
+  const auto soup = read_stl(file);
+  ASSERT_TRUE(soup.ok());
+  const auto surface = surface_from_soup(*soup);
+  ASSERT_TRUE(surface.ok());
+  const Locator<3> locator(*surface);
+  const NaturalDetector detector(*surface);
+  std::mt19937 rng(1);
+  std::normal_distribution<double> normal;
+  std::vector<double> thickness;
+  for (const auto& f : surface->facets) {
+    const Vec<3> x = (surface->points[f[0]] + surface->points[f[1]] + surface->points[f[2]]) / 3;
+    const auto natural = detector.at(x, {});
+    thickness.push_back(natural.thickness);
+    EXPECT_TRUE(is_spd<3>(natural.metric));
+    // From just inside, a ray leaves the body whatever its direction.
+    const Vec<3> inside = x - 1e-3 * locator.normal(locator.nearest(x)->facet);
+    for (int i = 0; i < 20; ++i)
+      EXPECT_TRUE(locator.exit(inside, Vec<3>(normal(rng), normal(rng), normal(rng)).normalized()));
+  }
+  EXPECT_GT(quantile(thickness, 0), 1);
+  EXPECT_NEAR(quantile(thickness, 0.05), 2, 0.05);
+  EXPECT_NEAR(quantile(thickness, 0.9), 5, 0.05);
 }
 
 TEST(NaturalMetric, SizesStayWithinTheirBounds) {
