@@ -6,10 +6,8 @@ namespace lamella {
 
 namespace {
 
-constexpr double kTolerance = 1e-9;
-
 void compare(const std::string& what, const std::vector<NamedMeasure>& a,
-             const std::vector<NamedMeasure>& b, bool names, ExportCertificate& out) {
+             const std::vector<NamedMeasure>& b, bool names, double tolerance, ExportCertificate& out) {
   if (a.size() != b.size()) {
     out.finding += std::to_string(a.size()) + " " + what + " written, " + std::to_string(b.size()) +
                    " read back. ";
@@ -24,7 +22,7 @@ void compare(const std::string& what, const std::vector<NamedMeasure>& a,
     const double scale = std::max(std::abs(a[i].measure), std::abs(b[i].measure));
     const double difference = scale > 0 ? std::abs(a[i].measure - b[i].measure) / scale : 0;
     out.worst_difference = std::max(out.worst_difference, difference);
-    if (!(difference <= kTolerance))
+    if (!(difference <= tolerance))
       out.finding += what + " \"" + a[i].name + "\": measure differs. ";
   }
 }
@@ -50,7 +48,7 @@ MeshSummary summarize(const SimplexMesh<3>& mesh) {
 }
 
 ExportCertificate certify(const std::string& file, const std::string& format,
-                          const MeshSummary& written, const MeshSummary& read_back, bool names) {
+                          const MeshSummary& written, const MeshSummary& read_back, bool names, double tolerance) {
   ExportCertificate out;
   out.file = file;
   out.format = format;
@@ -58,8 +56,8 @@ ExportCertificate certify(const std::string& file, const std::string& format,
   if (written.nodes != read_back.nodes)
     out.finding += std::to_string(written.nodes) + " nodes written, " +
                    std::to_string(read_back.nodes) + " read back. ";
-  compare("body", written.bodies, read_back.bodies, names, out);
-  compare("group", written.groups, read_back.groups, names, out);
+  compare("body", written.bodies, read_back.bodies, names, tolerance, out);
+  compare("group", written.groups, read_back.groups, names, tolerance, out);
   if (!out.finding.empty()) out.finding.pop_back();
   out.agrees = out.finding.empty();
   return out;

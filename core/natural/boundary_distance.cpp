@@ -6,6 +6,13 @@
 
 namespace lamella {
 
+namespace {
+
+// More than the centers and edge middles that adaption itself watches.
+constexpr int kOrder = 4;
+
+}  // namespace
+
 Result<BoundaryDistance> boundary_distance(const SimplexMesh<3>& mesh, const Locator<3>& surface,
                                            int threads, const Progress& progress) {
   if (surface.empty())
@@ -18,10 +25,9 @@ Result<BoundaryDistance> boundary_distance(const SimplexMesh<3>& mesh, const Loc
       if (d > of_facet[f].largest) of_facet[f] = {d, x};
     };
     look((p[0] + p[1] + p[2]) / 3);
-    for (int k = 0; k < 3; ++k) {
-      look(p[k]);
-      look(0.5 * (p[k] + p[(k + 1) % 3]));
-    }
+    for (int i = 0; i <= kOrder; ++i)
+      for (int j = 0; i + j <= kOrder; ++j)
+        look((i * p[0] + j * p[1] + (kOrder - i - j) * p[2]) / kOrder);
   });
   if (!complete) return cancelled_error();
   BoundaryDistance worst;

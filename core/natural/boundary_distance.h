@@ -13,9 +13,9 @@ struct BoundaryDistance {
   Vec<3> place = Vec<3>::Zero();  ///< where
 };
 
-/// Largest distance of the boundary facets' centers, edge middles and nodes to the surface.
-/// Does not depend on the number of threads (0: all cores). Errors: bad_input (empty surface),
-/// cancelled.
+/// Largest distance to the surface of 16 points of each boundary facet: its center and a lattice
+/// that divides its edges by four. Does not depend on the number of threads (0: all cores). Errors:
+/// bad_input (empty surface), cancelled.
 Result<BoundaryDistance> boundary_distance(const SimplexMesh<3>& mesh, const Locator<3>& surface,
                                            int threads = 0, const Progress& progress = {});
 

@@ -14,7 +14,8 @@ std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodie
   joined->thickness.push_back(0);
   joined->layers.push_back(0);
   const auto append = [](auto& to, const auto& from, std::size_t skip) {
-    to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(skip), from.end());
+    if (from.size() > skip)
+      to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(skip), from.end());
   };
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const MeshState& body = *bodies[b];

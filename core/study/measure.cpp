@@ -1,11 +1,7 @@
 #include "core/study/measure.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 
-#include "core/geometry/locator.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/boundary.h"
 #include "core/mesh/quality.h"
@@ -45,30 +41,6 @@ Result<IterationRecord> measure(MeshState& state, const Progress& progress) {
       static_cast<double>(unit) / static_cast<double>(std::max<std::size_t>(1, edges.size()));
   progress.report(1);
   return record;
-}
-
-Result<double> boundary_distance(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
-                                 const Progress& progress) {
-  // A lattice of order 4: vertices, quarters of the edges, and three points inside.
-  constexpr int kOrder = 4;
-  const Locator<3> locator(surface);
-  const double worst = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, mesh.facets.size(), 256), 0.0,
-      [&](const tbb::blocked_range<std::size_t>& range, double largest) {
-        for (std::size_t f = range.begin(); f != range.end() && !progress.cancelled(); ++f) {
-          const auto p = mesh.corners(mesh.facets[f]);
-          for (int i = 0; i <= kOrder; ++i)
-            for (int j = 0; i + j <= kOrder; ++j) {
-              const Vec<3> x = (i * p[0] + j * p[1] + (kOrder - i - j) * p[2]) / kOrder;
-              if (const auto near = locator.nearest(x))
-                largest = std::max(largest, near->distance2);
-            }
-        }
-        return largest;
-      },
-      [](double a, double b) { return std::max(a, b); });
-  if (progress.cancelled()) return cancelled_error();
-  return std::sqrt(worst);
 }
 
 SimplexMesh<3> extract_body(const SimplexMesh<3>& mesh, std::int32_t body,

@@ -12,11 +12,6 @@ namespace lamella {
 /// Errors: cancelled.
 Result<IterationRecord> measure(MeshState& state, const Progress& progress = {});
 
-/// Largest distance (mm) of 15 points of each boundary facet to the surface.
-/// Errors: cancelled.
-Result<double> boundary_distance(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
-                                 const Progress& progress = {});
-
 /// The boundary of one body of a mesh as a surface, as the mesh has it: no CAD is asked.
 ReferenceSurface<3> boundary_surface(const SimplexMesh<3>& mesh, std::int32_t body);
 

@@ -167,10 +167,9 @@ Result<void> write_report(const Report& report, const std::filesystem::path& ste
   return write_file(stem.string() + ".html", report_html(report));
 }
 
-Result<void> write_sidecar(const Study& study, const Outcome& outcome,
+Result<void> write_sidecar(const Study& study, const SimplexMesh<3>& mesh,
                            const std::vector<InputFile>& inputs,
                            const std::filesystem::path& file) {
-  const SimplexMesh<3>& mesh = outcome.state->mesh;
   Json json;
   json["program"] = "Lamella " + version();
   json["unit"] = "mm";
@@ -178,11 +177,10 @@ Result<void> write_sidecar(const Study& study, const Outcome& outcome,
   json["bodies"] = Json::array();
   for (std::size_t b = 0; b < mesh.bodies.size(); ++b) {
     Json body = {{"reference", b + 1}, {"name", mesh.bodies[b]}};
-    if (b < outcome.bodies.size()) {
-      body["layers"] = outcome.bodies[b].layers_asked;
-      body["alpha"] = settings_of(study, mesh.bodies[b]).alpha;
-      body["h_min"] = outcome.bodies[b].h_min;
-    }
+    const BodySettings settings = settings_of(study, mesh.bodies[b]);
+    body["layers"] = settings.layers;
+    body["alpha"] = settings.alpha;
+    if (settings.h_min) body["h_min"] = *settings.h_min;
     json["bodies"].push_back(std::move(body));
   }
   json["groups"] = Json::array();

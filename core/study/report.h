@@ -55,7 +55,7 @@ Result<void> write_report(const Report& report, const std::filesystem::path& ste
 
 /// Sidecar of a mesh file for what its format has no place for: unit, version, names of bodies and
 /// groups with their references (from 1), what was asked of each body, hashes of the inputs.
-Result<void> write_sidecar(const Study& study, const Outcome& outcome,
+Result<void> write_sidecar(const Study& study, const SimplexMesh<3>& mesh,
                            const std::vector<InputFile>& inputs, const std::filesystem::path& file);
 
 /// One line of JSON, without line end.

@@ -276,7 +276,7 @@ std::string report_html(const Report& report) {
          conformity_and_settings(report) + files(report) +
          "<footer>Lengths in mm. Quality, conformity and edges are measured in the metric asked; "
          "layers are counted from wall to wall in the mesh's own metric; boundary distance is the "
-         "largest one of 15 points of each boundary triangle to the reference surface.</footer>"
+         "largest one of 16 points of each boundary triangle to the reference surface.</footer>"
          "</main></body></html>\n";
 }
 

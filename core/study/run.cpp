@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "core/mesh/validate.h"
+#include "core/natural/boundary_distance.h"
 #include "core/natural/layers.h"
 #include "core/natural/natural_metric.h"
 #include "core/optimize/adapt.h"
+#include "core/study/first_mesh.h"
 #include "core/study/join.h"
 #include "core/study/measure.h"
 
@@ -22,7 +24,9 @@ double seconds_since(Clock::time_point start) {
 }
 
 constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations share the rest
-constexpr double kSettled = 0.05;         // relative change of the node count
+// Adaption watches a lattice of points of each boundary facet; those between may lie farther off.
+constexpr double kGuardShare = 0.6;
+constexpr double kSettled = 0.05;  // relative change of the node count
 
 /// 1 when the mesh has the layers asked: the 5 % quantile and the mean both count. A body without
 /// thin walls has nothing to measure and is content.
@@ -53,10 +57,12 @@ class BodyLoop {
   Result<void> begin(const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
                      const Progress& progress) {
     const auto start = Clock::now();
-    Result<SimplexMesh<3>> mesh = first_mesh(meshers, progress.portion(0, 0.7, "first mesh"));
-    if (!mesh) return mesh.error();
+    Result<FirstMesh> first = first_mesh(part_, meshers, progress.portion(0, 0.7, "first mesh"));
+    if (!first) return first.error();
+    outcome_.first_mesh_by = first->made_by;
+    outcome_.notes.insert(outcome_.notes.end(), first->notes.begin(), first->notes.end());
     detector_.emplace(part_.surface);
-    return accept(std::move(*mesh), start, progress.portion(0.7, 1));
+    return accept(std::move(first->mesh), start, progress.portion(0.7, 1));
   }
 
   bool done() const { return done_; }
@@ -65,7 +71,7 @@ class BodyLoop {
   Result<void> step(const Progress& progress) {
     const auto start = Clock::now();
     AdaptParams params;
-    params.chord_tolerance = outcome_.chord_tolerance;
+    params.chord_tolerance = kGuardShare * outcome_.chord_tolerance;
     params.seed = options_.seed;
     Result<Adapted<3>> adapted =
         adapt<3>(current_.mesh, current_.metric, &part_.surface, params, progress.portion(0, 0.8));
@@ -84,9 +90,10 @@ class BodyLoop {
     const IterationRecord& best = outcome_.records[best_record_];
     outcome_.layers = best.layers;
     outcome_.mesh_volume = best.volume;
-    Result<double> distance = boundary_distance(best_.mesh, part_.surface, progress);
+    Result<BoundaryDistance> distance =
+        boundary_distance(best_.mesh, Locator<3>(part_.surface), options_.threads, progress);
     if (!distance) return distance.error();
-    outcome_.boundary_distance = *distance;
+    outcome_.boundary_distance = distance->largest;
     if (best_record_ + 1 != outcome_.records.size())
       outcome_.notes.push_back("The mesh of iteration " + std::to_string(best.iteration) +
                                " was kept: later ones had fewer layers.");
@@ -94,32 +101,6 @@ class BodyLoop {
   }
 
  private:
-  Result<SimplexMesh<3>> first_mesh(const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
-                                    const Progress& progress) {
-    Error last{Code::failed, "No mesher was given.", ""};
-    for (std::size_t i = 0; i < meshers.size(); ++i) {
-      const double width = 1.0 / static_cast<double>(meshers.size());
-      const double begin = width * static_cast<double>(i);
-      Result<SimplexMesh<3>> mesh =
-          meshers[i]->generate(part_.surface, progress.portion(begin, begin + width));
-      if (mesh) {
-        if (Result<void> valid = validate<3>(*mesh); valid) {
-          outcome_.first_mesh_by = meshers[i]->name();
-          return mesh;
-        } else {
-          mesh = valid.error();
-        }
-      }
-      if (mesh.error().code == Code::cancelled) return mesh.error();
-      outcome_.notes.push_back("First mesh: " + meshers[i]->name() +
-                               " gave up: " + mesh.error().message);
-      last = mesh.error();
-    }
-    return Error{
-        Code::failed, "Body \"" + part_.name + "\": no first mesh could be made. " + last.message,
-        last.hint.empty() ? "Try another chord tolerance, or repair the part." : last.hint};
-  }
-
   /// Takes the mesh as the next state, with metric, layers and record.
   Result<void> accept(SimplexMesh<3> mesh, Clock::time_point start, const Progress& progress) {
     MeshState next;

@@ -122,8 +122,9 @@ TEST(Sidecar, NamesBodiesGroupsAndInputs) {
   const test::TemporaryFolder folder;
   Study study;
   const Outcome outcome = some_outcome();
-  ASSERT_TRUE(
-      write_sidecar(study, outcome, {{"a.stl", 3, std::string(64, 'b')}}, folder / "m.json").ok());
+  ASSERT_TRUE(write_sidecar(study, outcome.state->mesh, {{"a.stl", 3, std::string(64, 'b')}},
+                            folder / "m.json")
+                  .ok());
   const auto json = nlohmann::json::parse(read_file(folder / "m.json").value());
   EXPECT_EQ(json["unit"], "mm");
   EXPECT_EQ(json["bodies"][0]["name"], "cover <A&B>");

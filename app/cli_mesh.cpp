@@ -1,0 +1,259 @@
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/cli_commands.h"
+#include "core/mesh/validate.h"
+#include "core/study/first_mesh.h"
+#include "core/study/join.h"
+#include "core/study/study_file.h"
+
+namespace lamella::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+bool is_study(const std::string& file) { return fs::path(file).extension() == ".json"; }
+
+/// The study of the command line and the files it reads.
+struct Request {
+  Study study;
+  std::vector<fs::path> files;
+};
+
+Result<Request> request_of(const MeshCommand& c) {
+  Request request;
+  const auto studies = std::count_if(c.inputs.begin(), c.inputs.end(), is_study);
+  if (studies > 0 && c.inputs.size() > 1)
+    return Error{Code::usage, "A study brings its own parts: give the study alone.", ""};
+  if (studies > 0) {
+    Result<Study> study = read_study(c.inputs.front());
+    if (!study) {
+      Error error = study.error();
+      error.code = Code::bad_input;
+      return error;
+    }
+    request.study = std::move(*study);
+    request.files = input_files(request.study, fs::path(c.inputs.front()).parent_path());
+    if (request.files.empty())
+      return Error{Code::bad_input, "\"" + c.inputs.front() + "\": the study names no inputs.",
+                   "Add the parts to \"inputs\"."};
+  } else {
+    request.study.name = fs::path(c.inputs.front()).stem().string();
+    request.study.inputs = c.inputs;
+    request.files.assign(c.inputs.begin(), c.inputs.end());
+  }
+  StudyOptions& o = request.study.options;
+  if (c.chord_tolerance) o.chord_tolerance = c.chord_tolerance;
+  if (c.angle_tolerance) o.angle_tolerance = *c.angle_tolerance;
+  if (c.iterations) o.iterations = *c.iterations;
+  if (c.threads) o.threads = *c.threads;
+  if (c.seed) o.seed = *c.seed;
+  return request;
+}
+
+/// Options of the command line hold for every body.
+void apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study& study) {
+  std::vector<BodySettings> bodies;
+  for (const Part& part : parts) {
+    BodySettings body = settings_of(study, part.name);
+    if (c.layers) body.layers = *c.layers;
+    if (c.alpha) body.alpha = *c.alpha;
+    if (c.h_min) body.h_min = c.h_min;
+    if (c.h_max) body.h_max = c.h_max;
+    bodies.push_back(std::move(body));
+  }
+  study.bodies = std::move(bodies);
+}
+
+void tell_iteration(const IterationRecord& r, Console& console) {
+  if (r.iteration == 0)
+    console.say(" it      nodes   elements   layers mean     5 %   quality mean   worst    time");
+  char line[160];
+  std::snprintf(line, sizeof line, "%3d %10s %10s   %11.2f %7.2f   %12.3f %7.3f %6.1f s",
+                r.iteration, grouped(r.nodes).c_str(), grouped(r.elements).c_str(), r.layers.mean,
+                r.layers.p5, r.quality_mean, r.quality_min, r.seconds);
+  console.say(line);
+  if (!console.json()) return;
+  Json json = Json::parse(record_json(r));
+  json["phase"] = "iteration";
+  console.emit(dump(json));
+}
+
+void tell_end(const Outcome& outcome, const Report& report, const std::string& stem,
+              Console& console) {
+  for (const BodyOutcome& b : outcome.bodies) {
+    char line[240];
+    const double difference = b.cad_volume > 0 ? 100 * (b.mesh_volume / b.cad_volume - 1) : 0;
+    std::snprintf(line, sizeof line,
+                  "%s: layers %.2f (5 %%: %.2f) of %d, volume %+.3f %%, boundary within %.3g mm of "
+                  "%.3g mm, first mesh by %s",
+                  b.name.c_str(), b.layers.mean, b.layers.p5, b.layers_asked, difference,
+                  b.boundary_distance, b.chord_tolerance, b.first_mesh_by.c_str());
+    console.say(line);
+    for (const std::string& note : b.notes) console.say("  note: " + note);
+  }
+  console.say("report " + stem + ".html");
+  Json bodies = Json::array();
+  for (const BodyOutcome& b : outcome.bodies)
+    bodies.push_back({{"name", b.name},
+                      {"layers_asked", b.layers_asked},
+                      {"layers_mean", b.layers.mean},
+                      {"layers_p5", b.layers.p5},
+                      {"cad_volume", b.cad_volume},
+                      {"mesh_volume", b.mesh_volume},
+                      {"boundary_distance", b.boundary_distance},
+                      {"chord_tolerance", b.chord_tolerance},
+                      {"first_mesh_by", b.first_mesh_by},
+                      {"notes", b.notes}});
+  console.emit(dump({{"phase", "done"},
+                     {"converged", outcome.converged},
+                     {"cancelled", outcome.cancelled},
+                     {"nodes", report.final_record.nodes},
+                     {"elements", report.final_record.elements},
+                     {"quality_min", report.final_record.quality_min},
+                     {"quality_mean", report.final_record.quality_mean},
+                     {"valid", report.validity.valid()},
+                     {"bodies", bodies},
+                     {"report", stem + ".json"},
+                     {"seconds", outcome.seconds}}));
+}
+
+}  // namespace
+
+int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
+  // What would fail at the end is told at the beginning.
+  for (const std::string& output : c.outputs)
+    if (Result<void> known = check_export_name(output); !known) return console.fail(known.error());
+  Result<Request> request = request_of(c);
+  if (!request) return console.fail(request.error());
+  Study& study = request->study;
+  std::optional<tbb::global_control> limit;
+  if (study.options.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(study.options.threads));
+
+  const Progress progress = console.progress();
+  LoadParams load;
+  load.chord_tolerance = study.options.chord_tolerance;
+  load.angle_tolerance = study.options.angle_tolerance;
+  load.unit = unit_factor(c.unit);
+  Result<std::vector<Part>> parts = load_all(request->files, load, progress.portion(0, 0.05));
+  if (!parts) return console.fail(parts.error());
+  apply_to_bodies(c, *parts, study);
+
+  ReportContext context;
+  context.command = line;
+  for (const fs::path& file : request->files) {
+    Result<InputFile> input = describe_input(file);
+    if (!input) return console.fail(input.error());
+    context.inputs.push_back(std::move(*input));
+  }
+  for (const Part& part : *parts) {
+    console.say(part.name + ": " + grouped(part.surface.facets.size()) + " facets, " +
+                short_number(part.cad_volume, 6) +
+                " mm3, n = " + std::to_string(settings_of(study, part.name).layers));
+    console.emit(dump({{"phase", "body"},
+                       {"name", part.name},
+                       {"facets", part.surface.facets.size()},
+                       {"volume", part.cad_volume},
+                       {"notes", part.notes}}));
+  }
+
+  Result<Outcome> outcome =
+      run(study, *parts, meshers_for(mesher_choice(c.mesher), study.options.seed),
+          progress.portion(0.05, 0.95),
+          [&](const IterationRecord& r, const auto&) { tell_iteration(r, console); });
+  if (!outcome) return console.fail(outcome.error());
+
+  // After a cancel the best mesh is written all the same: no stop request goes along any more.
+  const Progress closing = outcome->cancelled ? Progress{} : progress.portion(0.95, 1, "writing");
+  for (const std::string& output : c.outputs) {
+    Result<ExportCertificate> proof =
+        export_mesh(output, *outcome->state, study, context.inputs, closing);
+    if (!proof) return console.fail(proof.error());
+    console.say("wrote " + output + " (" + proof->format + "), read back and compared");
+    console.emit(dump({{"phase", "written"}, {"file", output}, {"format", proof->format}}));
+    context.exports.push_back(std::move(*proof));
+  }
+  Result<Report> report = build_report(study, *outcome, context, closing);
+  if (!report) return console.fail(report.error());
+  const std::string stem = c.report.empty()
+                               ? fs::path(c.outputs.front()).replace_extension(".report").string()
+                               : c.report;
+  if (Result<void> written = write_report(*report, stem); !written)
+    return console.fail(written.error());
+  tell_end(*outcome, *report, stem, console);
+
+  if (outcome->cancelled)
+    return console.fail({Code::cancelled, "Cancelled; the best mesh so far was written.", ""});
+  if (c.min_quality && report->final_record.quality_min < *c.min_quality)
+    return console.fail({Code::poor_quality,
+                         "The worst element has quality " +
+                             short_number(report->final_record.quality_min, 3) + ", below " +
+                             short_number(*c.min_quality, 3) + "; the mesh was written.",
+                         "More iterations may help."});
+  if (!outcome->converged)
+    return console.fail({Code::not_converged,
+                         "Layers and node count have not settled; the mesh was written.",
+                         "Ask for more --iterations, or see the report for where layers lack."});
+  return 0;
+}
+
+int run_generate(const GenerateCommand& c, Console& console) {
+  if (Result<void> known = check_export_name(c.output); !known) return console.fail(known.error());
+  const Progress progress = console.progress();
+  LoadParams load;
+  load.chord_tolerance = c.chord_tolerance;
+  load.unit = unit_factor(c.unit);
+  Result<std::vector<Part>> parts = load_all({c.surface}, load, progress.portion(0, 0.1));
+  if (!parts) return console.fail(parts.error());
+
+  std::vector<MeshState> states(parts->size());
+  std::vector<const MeshState*> pointers;
+  std::vector<std::string> names;
+  const auto meshers = meshers_for(mesher_choice(c.mesher), c.seed);
+  for (std::size_t b = 0; b < parts->size(); ++b) {
+    const Part& part = (*parts)[b];
+    const auto at = static_cast<double>(b), count = static_cast<double>(parts->size());
+    const Progress share =
+        progress.portion(0.1 + 0.8 * at / count, 0.1 + 0.8 * (at + 1) / count, "first mesh");
+    Result<FirstMesh> mesh = first_mesh(part, meshers, share);
+    if (!mesh) return console.fail(mesh.error());
+    for (const std::string& note : mesh->notes) console.say(part.name + ": " + note);
+    MeshReport found = inspect<3>(mesh->mesh).value();
+    console.say(part.name + ": " + grouped(found.nodes) + " nodes, " + grouped(found.elements) +
+                " tetrahedra by " + mesh->made_by);
+    console.emit(dump({{"phase", "generated"},
+                       {"body", part.name},
+                       {"mesher", mesh->made_by},
+                       {"nodes", found.nodes},
+                       {"elements", found.elements},
+                       {"volume", found.volume},
+                       {"cad_volume", part.cad_volume},
+                       {"notes", mesh->notes}}));
+    states[b].mesh = std::move(mesh->mesh);
+    pointers.push_back(&states[b]);
+    names.push_back(part.name);
+  }
+  MeshState all = *join(pointers, names);
+  all.metric.clear();
+  all.thickness.clear();
+  all.layers.clear();
+  Result<ExportCertificate> proof =
+      export_mesh(c.output, all, Study{}, {}, progress.portion(0.9, 1, "writing"));
+  if (!proof) return console.fail(proof.error());
+  console.say("wrote " + c.output + " (" + proof->format + "), read back and compared");
+  console.emit(dump({{"phase", "written"}, {"file", c.output}, {"format", proof->format}}));
+  return 0;
+}
+
+}  // namespace lamella::cli

@@ -1,0 +1,214 @@
+#include "app/cli_options.h"
+
+#include <CLI/CLI.hpp>
+#include <map>
+
+#include "core/base/version.h"
+#include "core/cad/sample_parts.h"
+#include "core/metric/analytic.h"
+
+namespace lamella::cli {
+
+namespace {
+
+const std::map<std::string, double> kUnits = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"inch", 25.4}};
+
+const char* const kFooter = R"(
+Lengths are in mm, angles in radians. Exit status: 0 done, 1 error, 2 usage, 3 bad input,
+4 not converged (the mesh is written), 5 quality below the limit asked, 6 memory limit,
+130 cancelled (Ctrl-C; `mesh` writes the best mesh it has).
+
+Examples:
+  lamella-cli sample t_junction -o t.step
+  lamella-cli mesh t.step -n 4 -o t.msh -o t.vtu
+  lamella-cli check t.msh --layers 4
+  lamella-cli adapt cube.mesh --metric polar-2 --iterations 5 -o adapted.mesh
+)";
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+void add_unit(CLI::App* app, std::string& unit) {
+  app->add_option("--unit", unit,
+                  "Length unit of STL files, which name none: mm, cm, m or inch [mm]")
+      ->option_text("UNIT")
+      ->check(CLI::IsMember({"mm", "cm", "m", "inch"}));
+}
+
+void add_mesher(CLI::App* app, std::string& mesher) {
+  app->add_option(
+         "--mesher", mesher,
+         "First mesh by algorithm 2.1 (topological), Netgen, or the first that succeeds [auto]")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"auto", "topological", "netgen"}));
+}
+
+template <class Value>
+void add_chord(CLI::App* app, Value& value) {
+  app->add_option("--chord-tolerance", value,
+                  "Largest distance of the boundary to the part, mm [1/1000 of the diagonal]")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_json(CLI::App* app, bool& json) {
+  app->add_flag("--json", json, "One JSON object a line on standard output");
+}
+
+}  // namespace
+
+double unit_factor(const std::string& unit) { return kUnits.at(unit); }
+
+MesherChoice mesher_choice(const std::string& name) {
+  if (name == "topological") return MesherChoice::topological;
+  if (name == "netgen") return MesherChoice::netgen;
+  return MesherChoice::automatic;
+}
+
+std::optional<Command> parse(int argc, char** argv, int& status) {
+  CLI::App app(
+      "Anisotropic tetrahedral meshes for injection molding: n element layers through every wall.",
+      "lamella-cli");
+  app.set_version_flag("--version", "Lamella " + version());
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+
+  MeshCommand mesh;
+  CLI::App* m = app.add_subcommand("mesh", "Mesh parts with n layers through their walls");
+  m->add_option("PART", mesh.inputs, "STEP or STL files, or one study (.json)")
+      ->option_text("...")
+      ->required();
+  m->add_option("-o,--output", mesh.outputs,
+                "File to write: .msh (Gmsh 4.1), .vtu, .mesh (Medit) or .stl; may be repeated")
+      ->option_text("FILE")
+      ->required()
+      ->allow_extra_args(false);
+  m->add_option("-n,--layers", mesh.layers, "Elements through the thickness of each wall [4]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1000));
+  m->add_option("--alpha", mesh.alpha,
+                "Sizes up to (1 + alpha) times the smallest are divided by n too [1]")
+      ->option_text("X")
+      ->check(CLI::NonNegativeNumber);
+  m->add_option("--h-min", mesh.h_min, "Smallest size, mm [1/1000 of the body's diagonal]")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+  m->add_option("--h-max", mesh.h_max, "Largest size, mm [no bound]")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+  add_chord(m, mesh.chord_tolerance);
+  m->add_option("--angle-tolerance", mesh.angle_tolerance,
+                "Largest angle between neighbors of the tessellation [0.35]")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+  m->add_option("--iterations", mesh.iterations, "Adaptions at most [6]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1000));
+  m->add_option("--threads", mesh.threads, "Threads; the mesh does not depend on it [all cores]")
+      ->option_text("N")
+      ->check(CLI::Range(0, 4096));
+  m->add_option("--seed", mesh.seed, "Another seed gives another, equally good mesh [1]")
+      ->option_text("N");
+  m->add_option("--min-quality", mesh.min_quality, "End with status 5 when an element is worse")
+      ->option_text("X")
+      ->check(CLI::Range(0.0, 1.0));
+  add_unit(m, mesh.unit);
+  add_mesher(m, mesh.mesher);
+  m->add_option("--report", mesh.report, "Stem of the report: STEM.json and STEM.html [OUT.report]")
+      ->option_text("STEM");
+  add_json(m, mesh.json);
+
+  AdaptCommand adapt;
+  CLI::App* a = app.add_subcommand("adapt", "Adapt a mesh to a metric, in 2D or 3D");
+  a->add_option("MESH", adapt.mesh, "Medit .mesh (2D or 3D), .msh or .vtu")
+      ->option_text(" ")
+      ->required();
+  a->add_option("-o,--output", adapt.output, "File to write; a .mesh gets its metric as .sol")
+      ->option_text("FILE")
+      ->required();
+  auto* sol = a->add_option("--sol", adapt.sol, "Metric or size at the nodes (Medit .sol)")
+                  ->option_text("FILE");
+  auto* metric =
+      a->add_option("--metric", adapt.metric,
+                    "Analytic metric NAME or NAME:key=value,..: " + joined(metric_names()))
+          ->option_text("NAME");
+  sol->excludes(metric);
+  a->add_option("--iterations", adapt.iterations, "Adaptions [3]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1000));
+  add_chord(a, adapt.chord_tolerance);
+  a->add_option("--seed", adapt.seed, "Another seed gives another, equally good mesh [1]")
+      ->option_text("N");
+  add_json(a, adapt.json);
+
+  GenerateCommand generate;
+  CLI::App* g = app.add_subcommand("generate", "Fill a closed surface with tetrahedra");
+  g->add_option("SURFACE", generate.surface, "STEP or STL file")->option_text(" ")->required();
+  g->add_option("-o,--output", generate.output, "File to write: .mesh, .msh, .vtu")
+      ->option_text("FILE")
+      ->required();
+  add_chord(g, generate.chord_tolerance);
+  add_unit(g, generate.unit);
+  add_mesher(g, generate.mesher);
+  g->add_option("--seed", generate.seed, "Another seed gives another, equally good mesh [1]")
+      ->option_text("N");
+  add_json(g, generate.json);
+
+  CheckCommand check;
+  CLI::App* c = app.add_subcommand("check", "Validity, quality, conformity and layers of a mesh");
+  c->add_option("MESH", check.mesh, "Medit .mesh (2D or 3D), .msh or .vtu")
+      ->option_text(" ")
+      ->required();
+  auto* check_sol =
+      c->add_option("--sol", check.sol, "Metric at the nodes (Medit .sol)")->option_text("FILE");
+  auto* check_metric =
+      c->add_option("--metric", check.metric, "Analytic metric, as for adapt")->option_text("NAME");
+  check_sol->excludes(check_metric);
+  c->add_option("-n,--layers", check.layers, "Measure the layers through the walls, n are asked")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1000));
+  c->add_option("--min-quality", check.min_quality, "End with status 5 when an element is worse")
+      ->option_text("X")
+      ->check(CLI::Range(0.0, 1.0));
+  add_json(c, check.json);
+
+  InfoCommand info;
+  CLI::App* i = app.add_subcommand("info", "Bodies, size and volume of a part");
+  i->add_option("PART", info.part, "STEP or STL file")->option_text(" ")->required();
+  add_chord(i, info.chord_tolerance);
+  add_unit(i, info.unit);
+  add_json(i, info.json);
+
+  SampleCommand sample;
+  CLI::App* s =
+      app.add_subcommand("sample", "Write a part made by code: " + joined(sample_names()));
+  s->add_option("NAME", sample.name, "Its name")->option_text(" ")->required();
+  s->add_option("-o,--output", sample.output, "STEP file to write [NAME.step]")
+      ->option_text("FILE");
+
+  app.footer(kFooter);  // after the subcommands, which would repeat it
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    status = app.exit(error) == 0 ? 0 : exit_code(Code::usage);
+    return std::nullopt;
+  }
+  if (m->parsed()) return mesh;
+  if (a->parsed()) {
+    if (adapt.sol.empty() && adapt.metric.empty()) {
+      std::cerr << "lamella-cli: adapt needs --sol or --metric.\n";
+      status = exit_code(Code::usage);
+      return std::nullopt;
+    }
+    return adapt;
+  }
+  if (g->parsed()) return generate;
+  if (c->parsed()) return check;
+  if (i->parsed()) return info;
+  return sample;
+}
+
+}  // namespace lamella::cli

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/services.h"
+
+namespace lamella::cli {
+
+/// What the command line asks for, one struct a subcommand; unset options keep the study's value.
+struct MeshCommand {
+  std::vector<std::string> inputs;
+  std::vector<std::string> outputs;
+  std::optional<int> layers;
+  std::optional<double> alpha, h_min, h_max, chord_tolerance, angle_tolerance;
+  std::optional<int> iterations, threads;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> min_quality;
+  std::string unit = "mm";
+  std::string mesher = "auto";
+  std::string report;
+  bool json = false;
+};
+
+struct AdaptCommand {
+  std::string mesh, output, sol, metric;
+  int iterations = 3;
+  std::optional<double> chord_tolerance;
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
+struct GenerateCommand {
+  std::string surface, output;
+  std::string unit = "mm";
+  std::string mesher = "auto";
+  std::optional<double> chord_tolerance;
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
+struct CheckCommand {
+  std::string mesh, sol, metric;
+  std::optional<int> layers;
+  std::optional<double> min_quality;
+  bool json = false;
+};
+
+struct InfoCommand {
+  std::string part;
+  std::string unit = "mm";
+  std::optional<double> chord_tolerance;
+  bool json = false;
+};
+
+struct SampleCommand {
+  std::string name, output;
+};
+
+using Command = std::variant<MeshCommand, AdaptCommand, GenerateCommand, CheckCommand, InfoCommand,
+                             SampleCommand>;
+
+/// Parses the command line. Help, version and errors of usage are printed here: the exit status is
+/// in `status` then, and nothing is returned.
+std::optional<Command> parse(int argc, char** argv, int& status);
+
+/// mm per unit of --unit.
+double unit_factor(const std::string& unit);
+MesherChoice mesher_choice(const std::string& name);
+
+}  // namespace lamella::cli

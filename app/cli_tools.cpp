@@ -1,0 +1,343 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/cli_commands.h"
+#include "core/cad/sample_parts.h"
+#include "core/io/medit.h"
+#include "core/mesh/check.h"
+#include "core/mesh/quality.h"
+#include "core/metric/analytic.h"
+#include "core/natural/layers.h"
+#include "core/optimize/adapt.h"
+#include "core/study/measure.h"
+
+namespace lamella::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Whatever keeps an input from being read, it is the input that is bad.
+Error of_input(Error error) {
+  if (error.code == Code::io) error.code = Code::bad_input;
+  return error;
+}
+
+Result<AnyMesh> read_any(const std::string& file, MetricField<3>* metric,
+                         const Progress& progress) {
+  if (fs::path(file).extension() == ".mesh") return read_medit(file, progress);
+  Result<MeshState> state = read_mesh(file, progress);
+  if (!state) return state.error();
+  if (metric) *metric = std::move(state->metric);
+  return AnyMesh(std::move(state->mesh));
+}
+
+/// The metric asked at the nodes: from a .sol file, analytic, or none (empty).
+template <int D>
+Result<MetricField<D>> metric_of(const SimplexMesh<D>& mesh, const std::string& sol,
+                                 const std::string& name, MetricFunction<D>* function) {
+  if (!sol.empty()) {
+    Result<MetricField<D>> field = read_sol<D>(sol, mesh.node_count());
+    if (!field) return of_input(field.error());
+    return field;
+  }
+  if (name.empty()) return MetricField<D>{};
+  Result<MetricFunction<D>> analytic = named_metric<D>(name);
+  if (!analytic) return analytic.error();
+  if (function) *function = *analytic;
+  return sample_metric<D>(*analytic, mesh.points);
+}
+
+Json stats_json(const Stats& s) {
+  return {{"count", s.count}, {"min", s.min}, {"p1", s.p1},    {"p5", s.p5},
+          {"p25", s.p25},     {"p50", s.p50}, {"p75", s.p75},  {"p95", s.p95},
+          {"p99", s.p99},     {"max", s.max}, {"mean", s.mean}};
+}
+
+Json report_json(const CheckReport& r, bool with_metric) {
+  const MeshReport& m = r.mesh;
+  Json json = {{"phase", "check"},
+               {"dimension", r.dimension},
+               {"nodes", m.nodes},
+               {"elements", m.elements},
+               {"boundary_faces", m.faces_boundary},
+               {"valid", m.valid()},
+               {"conforming", m.conforming()},
+               {"finding", m.first_finding},
+               {"inverted", m.inverted},
+               {"faces_of_more_than_two_elements", m.faces_shared},
+               {"misoriented", m.misoriented},
+               {"facets_missing", m.facets_missing},
+               {"facets_extra", m.facets_extra},
+               {"unused_nodes", m.unused},
+               {"volume", m.volume},
+               {"volume_by_boundary", m.volume_boundary},
+               {"boundary_area", m.boundary_area},
+               {"edges", r.edges},
+               {"aspect_ratio", stats_json(r.aspect_ratio)}};
+  if (!with_metric) return json;
+  json["edge_length"] = stats_json(r.edge_length);
+  json["unit_edges"] = r.unit_edges;
+  json["mean_ratio"] = stats_json(r.mean_ratio);
+  json["mean_ratio_mean_metric"] = stats_json(r.mean_ratio_mean);
+  json["shape"] = stats_json(r.shape);
+  json["quality"] = stats_json(r.quality);
+  json["conformity"] = stats_json(r.conformity);
+  json["conformity_invariant"] = stats_json(r.conformity_invariant);
+  json["flat"] = r.flat;
+  json["allocation"] = r.allocation;
+  return json;
+}
+
+void say_stats(Console& console, const char* name, const Stats& s) {
+  char line[200];
+  std::snprintf(line, sizeof line, "  %-26s %10.6g %10.6g %10.6g %10.6g %10.6g", name, s.min, s.p5,
+                s.p50, s.mean, s.max);
+  console.say(line);
+}
+
+void say_check(Console& console, const CheckReport& r, bool with_metric) {
+  const MeshReport& m = r.mesh;
+  console.say(std::to_string(r.dimension) + "D mesh: " + grouped(m.nodes) + " nodes, " +
+              grouped(m.elements) + " elements, " + grouped(m.faces_boundary) + " boundary faces");
+  console.say(m.valid() ? "valid: no inverted element, every face in one or two elements"
+                        : "not valid: " + m.first_finding);
+  console.say("volume " + short_number(m.volume, 10) + ", by its boundary " +
+              short_number(m.volume_boundary, 10) + "; boundary " +
+              short_number(m.boundary_area, 8));
+  console.say(
+      "                                    min         5 %     median       mean        max");
+  if (with_metric) {
+    say_stats(console, "edge length in the metric", r.edge_length);
+    say_stats(console, "mean ratio", r.mean_ratio);
+    say_stats(console, "shape (3.1)", r.shape);
+    say_stats(console, "quality c(T) (3.7)", r.quality);
+    say_stats(console, "conformity (1.32)", r.conformity);
+    say_stats(console, "conformity, invariant", r.conformity_invariant);
+  }
+  say_stats(console, "aspect ratio, Euclidean", r.aspect_ratio);
+  if (with_metric)
+    console.say("unit edges " + short_number(100 * r.unit_edges, 5) + " %, allocation (1.34) " +
+                short_number(r.allocation, 5));
+}
+
+/// Layers of each body between the walls of the mesh itself.
+int check_layers(const SimplexMesh<3>& mesh, int asked, const Progress& progress,
+                 Console& console) {
+  bool reached = true;
+  for (std::size_t b = 0; b < mesh.bodies.size(); ++b) {
+    const auto body = static_cast<std::int32_t>(b);
+    Result<Layers> layers =
+        measure_layers(extract_body(mesh, body), boundary_surface(mesh, body), asked, 0, progress);
+    if (!layers) return console.fail(layers.error());
+    const LayerStats& s = layers->stats;
+    char line[200];
+    std::snprintf(
+        line, sizeof line,
+        ": layers mean %.3f, 5 %% %.3f, median %.3f, at least %d at %.1f %% of %zu places", s.mean,
+        s.p5, s.p50, asked, 100 * s.share_reached, s.places);
+    console.say(s.places ? mesh.bodies[b] + line : mesh.bodies[b] + ": no thin wall found");
+    console.emit(dump({{"phase", "layers"},
+                       {"body", mesh.bodies[b]},
+                       {"asked", asked},
+                       {"mean", s.mean},
+                       {"p5", s.p5},
+                       {"median", s.p50},
+                       {"share_reached", s.share_reached},
+                       {"places", s.places}}));
+    reached = reached && (s.places == 0 || (s.mean >= asked && s.p5 >= 0.9 * asked));
+  }
+  if (reached) return 0;
+  return console.fail({Code::not_converged,
+                       "The layers asked are not reached: mean " + std::string("below n, or 5 % ") +
+                           "quantile below 0.9 n.",
+                       "Mesh again with more iterations."});
+}
+
+template <int D>
+int check_mesh(const SimplexMesh<D>& mesh, MetricField<D> metric, const CheckCommand& c,
+               Console& console) {
+  const Progress progress = console.progress();
+  if (!c.sol.empty() || !c.metric.empty()) {
+    Result<MetricField<D>> asked = metric_of<D>(mesh, c.sol, c.metric, nullptr);
+    if (!asked) return console.fail(asked.error());
+    metric = std::move(*asked);
+  }
+  const bool with_metric = !metric.empty();
+  if (!with_metric) metric.assign(mesh.points.size(), Metric<D>::Identity());
+  if (c.min_quality && !with_metric)
+    return console.fail({Code::usage, "--min-quality needs a metric, and the file has none.",
+                         "Give --sol or --metric."});
+  if (c.layers && D != 3)
+    return console.fail({Code::usage, "--layers needs a mesh of tetrahedra.", ""});
+  Result<CheckReport> report = check<D>(mesh, metric, progress.portion(0, 0.7));
+  if (!report) return console.fail(report.error());
+  say_check(console, *report, with_metric);
+  console.emit(dump(report_json(*report, with_metric)));
+  if (!report->mesh.valid())
+    return console.fail({Code::bad_input, "\"" + c.mesh + "\": " + report->mesh.first_finding, ""});
+  if constexpr (D == 3)
+    if (c.layers)
+      if (const int status = check_layers(mesh, *c.layers, progress.portion(0.7, 1), console))
+        return status;
+  if (c.min_quality && report->quality.min < *c.min_quality)
+    return console.fail({Code::poor_quality,
+                         "The worst element has quality " + short_number(report->quality.min, 4) +
+                             ", below " + short_number(*c.min_quality, 4) + ".",
+                         ""});
+  return 0;
+}
+
+/// Writes the adapted mesh: any format in 3D, Medit in 2D.
+template <int D>
+Result<void> write_adapted(const std::string& output, Adapted<D>&& adapted) {
+  if constexpr (D == 3) {
+    MeshState state;
+    state.mesh = std::move(adapted.mesh);
+    state.metric = std::move(adapted.metric);
+    state.quality = element_qualities<3>(state.mesh, state.metric);
+    Result<ExportCertificate> proof = export_mesh(output, state, Study{});
+    if (!proof) return proof.error();
+    return {};
+  } else {
+    if (Result<void> done = write_medit<D>(adapted.mesh, output); !done) return done;
+    return write_sol<D>(adapted.metric, fs::path(output).replace_extension(".sol"));
+  }
+}
+
+template <int D>
+int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& console) {
+  const Progress progress = console.progress();
+  if (Result<void> known = check_export_name(c.output); !known) return console.fail(known.error());
+  if (D == 2 && fs::path(c.output).extension() != ".mesh")
+    return console.fail({Code::usage, "A 2D mesh is written as Medit only.", "Use OUT.mesh."});
+  MetricFunction<D> function;
+  Result<MetricField<D>> metric = metric_of<D>(mesh, c.sol, c.metric, &function);
+  if (!metric) return console.fail(metric.error());
+  AdaptParams params;
+  params.chord_tolerance = c.chord_tolerance;
+  params.seed = c.seed;
+  Adapted<D> current{mesh, std::move(*metric)};
+  for (int i = 1; i <= c.iterations; ++i) {
+    const Progress round = progress.portion((i - 1.0) / c.iterations, 1.0 * i / c.iterations,
+                                            "adaption " + std::to_string(i));
+    Result<Adapted<D>> next =
+        adapt<D>(current.mesh, current.metric, nullptr, params, round.portion(0, 0.9), function);
+    if (!next) return console.fail(next.error());
+    current = std::move(*next);
+    // The field that was transported drifts; an analytic metric is known exactly at the new nodes.
+    if (function) current.metric = sample_metric<D>(function, current.mesh.points);
+    Result<CheckReport> report = check<D>(current.mesh, current.metric, round.portion(0.9, 1));
+    if (!report) return console.fail(report.error());
+    char line[200];
+    std::snprintf(
+        line, sizeof line,
+        "%3d %10s nodes %10s elements   quality mean %.3f worst %.3f   unit edges %.1f %%", i,
+        grouped(report->mesh.nodes).c_str(), grouped(report->mesh.elements).c_str(),
+        report->quality.mean, report->quality.min, 100 * report->unit_edges);
+    console.say(line);
+    Json json = report_json(*report, true);
+    json["phase"] = "iteration";
+    json["iteration"] = i;
+    console.emit(dump(json));
+  }
+  if (Result<void> done = write_adapted<D>(c.output, std::move(current)); !done)
+    return console.fail(done.error());
+  console.say("wrote " + c.output);
+  console.emit(dump({{"phase", "written"}, {"file", c.output}}));
+  return 0;
+}
+
+/// "t-junction" and "tray" find "t_junction" and "ribbed_tray".
+std::string sample_called(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  std::vector<std::string> found;
+  for (const std::string& known : sample_names()) {
+    if (known == name) return known;
+    if (known.find(name) != std::string::npos) found.push_back(known);
+  }
+  return found.size() == 1 ? found.front() : name;
+}
+
+}  // namespace
+
+int run_check(const CheckCommand& c, Console& console) {
+  MetricField<3> own;
+  Result<AnyMesh> mesh = read_any(c.mesh, &own, console.progress().portion(0, 0));
+  if (!mesh) return console.fail(of_input(mesh.error()));
+  if (const auto* flat = std::get_if<SimplexMesh<2>>(&*mesh))
+    return check_mesh<2>(*flat, {}, c, console);
+  return check_mesh<3>(std::get<SimplexMesh<3>>(*mesh), std::move(own), c, console);
+}
+
+int run_adapt(const AdaptCommand& c, Console& console) {
+  Result<AnyMesh> mesh = read_any(c.mesh, nullptr, console.progress().portion(0, 0));
+  if (!mesh) return console.fail(of_input(mesh.error()));
+  if (const auto* flat = std::get_if<SimplexMesh<2>>(&*mesh))
+    return adapt_mesh<2>(*flat, c, console);
+  return adapt_mesh<3>(std::get<SimplexMesh<3>>(*mesh), c, console);
+}
+
+int run_info(const InfoCommand& c, Console& console) {
+  LoadParams load;
+  load.chord_tolerance = c.chord_tolerance;
+  load.unit = unit_factor(c.unit);
+  Result<std::vector<Part>> parts = load_all({c.part}, load, console.progress());
+  if (!parts) return console.fail(parts.error());
+  console.say(c.part + ": " + std::to_string(parts->size()) +
+              (parts->size() == 1 ? " body" : " bodies"));
+  for (const Part& part : *parts) {
+    Vec<3> low = Vec<3>::Constant(1e300), high = -low;
+    for (const Vec<3>& x : part.surface.points) {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    const Vec<3> size = high - low;
+    double area = 0;
+    for (const auto& f : part.surface.facets)
+      area += 0.5 * facet_normal<3>({part.surface.points[f[0]], part.surface.points[f[1]],
+                                     part.surface.points[f[2]]})
+                        .norm();
+    // Twice the volume over the area is the thickness of a thin sheet.
+    const double wall = area > 0 ? 2 * part.cad_volume / area : 0;
+    console.say("body \"" + part.name + "\"");
+    console.say("  size        " + short_number(size[0], 6) + " x " + short_number(size[1], 6) +
+                " x " + short_number(size[2], 6) + " mm");
+    console.say("  volume      " + short_number(part.cad_volume, 8) + " mm3, area " +
+                short_number(area, 8) + " mm2, mean wall about " + short_number(wall, 3) + " mm");
+    console.say("  surface     " + grouped(part.surface.facets.size()) + " triangles on " +
+                grouped(part.surface.faces.size()) + " faces, " +
+                grouped(part.surface.feature_edges.size()) + " feature edges, within " +
+                short_number(part.chord_error, 3) + " mm");
+    for (const std::string& note : part.notes) console.say("  note        " + note);
+    console.emit(dump({{"phase", "body"},
+                       {"name", part.name},
+                       {"size", {size[0], size[1], size[2]}},
+                       {"volume", part.cad_volume},
+                       {"area", area},
+                       {"mean_wall", wall},
+                       {"triangles", part.surface.facets.size()},
+                       {"faces", part.surface.faces.size()},
+                       {"feature_edges", part.surface.feature_edges.size()},
+                       {"chord_error", part.chord_error},
+                       {"notes", part.notes}}));
+  }
+  return 0;
+}
+
+int run_sample(const SampleCommand& c, Console& console) {
+  const std::string name = sample_called(c.name);
+  const std::string output = c.output.empty() ? name + ".step" : c.output;
+  if (Result<void> done = write_sample(name, output); !done) return console.fail(done.error());
+  console.say("wrote " + output);
+  return 0;
+}
+
+}  // namespace lamella::cli

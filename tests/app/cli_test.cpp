@@ -1,0 +1,249 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core/base/atomic_file.h"
+#include "core/io/medit.h"
+#include "core/io/msh.h"
+#include "core/mesh/sample_meshes.h"
+#include "core/mesh/validate.h"
+#include "tests/support/temporary_folder.h"
+
+namespace lamella {
+namespace {
+
+using Names = std::vector<std::string>;
+using nlohmann::json;
+
+/// The batch program run in a folder of its own, as a user would.
+class Cli : public testing::Test {
+ protected:
+  test::TemporaryFolder folder;
+  std::string out;  ///< standard output of the last run
+  std::string err;  ///< standard error of the last run
+
+  int run(const std::string& arguments) { return finish(start(arguments)); }
+  FILE* start(const std::string& arguments) {
+    const std::string command = "cd '" + folder.path().string() + "' && exec " + LAMELLA_BIN_DIR +
+                                "/lamella-cli " + arguments + " 2>'" + errors_.string() + "'";
+    // The first line is the process id, which exec keeps.
+    return ::popen(("echo $$; " + command).c_str(), "r");
+  }
+  int finish(FILE* pipe) {
+    out.clear();
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
+    const std::size_t line = out.find('\n');
+    if (out.find_first_not_of("0123456789") == line) out.erase(0, line + 1);
+    const int status = ::pclose(pipe);
+    err = read_file(errors_).value();
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::vector<json> lines() const {
+    std::vector<json> objects;
+    for (std::size_t at = 0; at < out.size();) {
+      const std::size_t end = std::min(out.find('\n', at), out.size());
+      objects.push_back(json::parse(out.substr(at, end - at)));
+      at = end + 1;
+    }
+    return objects;
+  }
+  void write(const std::string& name, const std::string& bytes) {
+    ASSERT_TRUE(write_file(folder / name, bytes).ok());
+  }
+  /// A closed box as ASCII STL.
+  static std::string box_stl(double x, double y, double z) {
+    const SimplexMesh<3> mesh = box_mesh<3>({1, 1, 1}, Vec<3>::Zero(), Vec<3>(x, y, z));
+    std::string text = "solid box\n";
+    for (const auto& facet : mesh.facets) {
+      text += "facet normal 0 0 0\nouter loop\n";
+      for (const Vec<3>& p : mesh.corners(facet))
+        text += "vertex " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " +
+                std::to_string(p[2]) + "\n";
+      text += "endloop\nendfacet\n";
+    }
+    return text + "endsolid box\n";
+  }
+
+ private:
+  test::TemporaryFolder elsewhere_;
+  std::filesystem::path errors_ = elsewhere_ / "errors";
+};
+
+TEST_F(Cli, HelpAndVersionAreNoErrors) {
+  EXPECT_EQ(run("--help"), 0);
+  for (const std::string name : {"mesh", "adapt", "generate", "check", "info", "sample", "130"})
+    EXPECT_NE(out.find(name), std::string::npos) << name;
+  EXPECT_EQ(run("mesh --help"), 0);
+  EXPECT_NE(out.find("--chord-tolerance"), std::string::npos);
+  EXPECT_EQ(run("--version"), 0);
+  EXPECT_NE(out.find("Lamella "), std::string::npos);
+}
+
+TEST_F(Cli, WrongUsageIsStatus2AndWritesNothing) {
+  for (const std::string arguments :
+       {"", "frobnicate", "mesh", "mesh a.step", "mesh a.step -n 0 -o b.msh",
+        "mesh a.step -n four -o b.msh", "mesh a.step --no-such-option -o b.msh",
+        "mesh a.step -o b.xyz", "mesh a.step -o no/such/folder/b.msh", "mesh a.step -o",
+        "mesh a.step --unit furlong -o b.msh", "adapt a.mesh -o b.mesh",
+        "adapt a.mesh --sol a.sol --metric uniform -o b.mesh", "sample no_such_part",
+        "check a.mesh --layers 0"}) {
+    EXPECT_EQ(run(arguments), 2) << arguments << "\n" << err;
+    EXPECT_FALSE(err.empty()) << arguments;
+  }
+  EXPECT_EQ(folder.names(), Names{});
+}
+
+TEST_F(Cli, BadInputsAreStatus3WithOneSentenceAndLeaveNothing) {
+  write("empty.step", "");
+  write("empty.stl", "");
+  write("garbage.step", "this is no part at all\n");
+  write("garbage.stl", "this is no part at all\n");
+  const std::string box = box_stl(10, 10, 1);
+  write("truncated.stl", box.substr(0, box.size() / 2));
+  write("empty.json", "");
+  write("lost.json", R"({"schema": 1, "inputs": ["nowhere.step"]})");
+  const Names before = folder.names();
+  for (const std::string name :
+       {"missing.step", "missing.stl", "empty.step", "empty.stl", "garbage.step", "garbage.stl",
+        "truncated.stl", "empty.json", "lost.json", "missing.json"}) {
+    EXPECT_EQ(run("mesh " + name + " -o out.msh"), 3) << name << ": " << err;
+    const std::string named = name == "lost.json" ? "nowhere.step" : name;
+    EXPECT_NE(err.find(named), std::string::npos) << err;
+    if (name.find("json") == std::string::npos) {
+      EXPECT_EQ(run("info --json " + name), 3) << name;
+      EXPECT_EQ(lines().at(0)["status"], 3);
+      EXPECT_EQ(run("generate " + name + " -o out.mesh"), 3) << name;
+    }
+  }
+  EXPECT_EQ(folder.names(), before);
+}
+
+TEST_F(Cli, BadMeshesAreStatus3) {
+  write("empty.mesh", "");
+  write("garbage.msh", "garbage");
+  write("garbage.vtu", "garbage");
+  write("noending", "x");
+  for (const std::string name :
+       {"missing.mesh", "empty.mesh", "garbage.msh", "garbage.vtu", "noending"}) {
+    EXPECT_EQ(run("check " + name), 3) << name;
+    EXPECT_NE(err.find(name), std::string::npos) << err;
+    EXPECT_EQ(run("adapt " + name + " --metric uniform -o out.mesh"), 3) << name;
+  }
+  SimplexMesh<3> inverted = unit_box<3>(2);
+  inverted.points[14] += Vec<3>(1.5, 0, 0);
+  ASSERT_TRUE(write_medit<3>(inverted, folder / "inverted.mesh").ok());
+  EXPECT_EQ(run("check inverted.mesh"), 3);
+}
+
+TEST_F(Cli, APlateGetsItsLayersAndEveryFileAgrees) {
+  ASSERT_EQ(run("sample plate -o plate.step"), 0) << err;
+  ASSERT_EQ(run("info plate.step --json"), 0) << err;
+  const double volume = lines().at(0)["volume"];
+  ASSERT_EQ(run("mesh plate.step -n 4 --json -o p.msh -o p.vtu -o p.mesh"), 0) << err;
+
+  const std::vector<json> told = lines();
+  EXPECT_EQ(told.front()["phase"], "body");
+  const json& done = told.back();
+  ASSERT_EQ(done["phase"], "done");
+  EXPECT_EQ(done["converged"], true);
+  EXPECT_EQ(done["valid"], true);
+  EXPECT_NEAR(done["bodies"][0]["mesh_volume"], volume, 5e-3 * volume);
+  EXPECT_GE(done["bodies"][0]["layers_mean"], 4);
+  EXPECT_LE(done["bodies"][0]["boundary_distance"], done["bodies"][0]["chord_tolerance"]);
+  EXPECT_EQ(folder.names(), (Names{"p.json", "p.mesh", "p.msh", "p.report.html", "p.report.json",
+                                   "p.sol", "p.vtu", "plate.step"}));
+
+  const Result<MshContent> back = read_msh(folder / "p.msh");
+  ASSERT_TRUE(back.ok());
+  EXPECT_TRUE(validate<3>(back->mesh).ok());
+  EXPECT_EQ(back->mesh.groups, Names{"walls"});
+  const json report = json::parse(read_file(folder / "p.report.json").value());
+  EXPECT_EQ(report["exports"].size(), 3u);
+  EXPECT_NE(report["command"].get<std::string>().find("mesh plate.step -n 4"), std::string::npos);
+
+  for (const std::string name : {"p.msh", "p.vtu"}) {
+    ASSERT_EQ(run("check " + name + " --layers 4 --json"), 0) << name << err;
+    EXPECT_EQ(lines().at(0)["elements"], done["elements"]);
+    EXPECT_NEAR(lines().at(0)["quality"]["min"], done["quality_min"], 1e-9);
+  }
+  ASSERT_EQ(run("check p.mesh --sol p.sol --json"), 0) << err;
+  EXPECT_NEAR(lines().at(0)["quality"]["min"], done["quality_min"], 1e-9);
+  EXPECT_EQ(run("check p.msh --min-quality 0.999"), 5);
+  EXPECT_EQ(run("check p.msh --layers 200"), 4);
+}
+
+TEST_F(Cli, AStudySaysTheSameAsTheCommandLine) {
+  std::filesystem::create_directory(folder / "parts");
+  write("parts/box.stl", box_stl(12, 10, 1));
+  write("study.json",
+        R"({"schema": 1, "name": "s", "inputs": ["parts/box.stl"],
+            "bodies": [{"name": "box", "layers": 2}], "options": {"iterations": 3, "seed": 5}})");
+  const int by_study = run("mesh study.json -o a.msh");
+  const int by_line = run("mesh parts/box.stl -n 2 --iterations 3 --seed 5 -o b.msh");
+  EXPECT_EQ(by_study, by_line);
+  EXPECT_EQ(read_file(folder / "a.msh").value(), read_file(folder / "b.msh").value());
+}
+
+TEST_F(Cli, TheMeshDoesNotDependOnTheThreads) {
+  write("box.stl", box_stl(12, 10, 1));
+  run("mesh box.stl -n 2 --iterations 2 --threads 1 -o one.msh");
+  run("mesh box.stl -n 2 --iterations 2 --threads 2 -o two.msh");
+  EXPECT_EQ(read_file(folder / "one.msh").value(), read_file(folder / "two.msh").value());
+}
+
+TEST_F(Cli, StlUnitsAreHonored) {
+  write("box.stl", box_stl(1, 2, 3));
+  ASSERT_EQ(run("info box.stl --unit inch --json"), 0) << err;
+  EXPECT_NEAR(lines().at(0)["volume"], 6 * 25.4 * 25.4 * 25.4, 1e-6);
+}
+
+TEST_F(Cli, GenerateFillsASurface) {
+  write("box.stl", box_stl(3, 2, 1));
+  ASSERT_EQ(run("generate box.stl -o box.mesh --json"), 0) << err;
+  EXPECT_NEAR(lines().at(0)["volume"], 6, 1e-12);
+  ASSERT_EQ(run("check box.mesh --json"), 0) << err;
+  EXPECT_NEAR(lines().at(0)["volume"], 6, 1e-12);
+  EXPECT_EQ(run("check box.mesh --min-quality 0.1"), 2);
+}
+
+TEST_F(Cli, AdaptsToAnAnalyticMetricIn2DAnd3D) {
+  ASSERT_TRUE(write_medit<2>(unit_box<2>(4), folder / "square.mesh").ok());
+  ASSERT_EQ(run("adapt square.mesh --metric uniform:h=0.1 -o a.mesh --json"), 0) << err;
+  EXPECT_GT(lines().at(2)["unit_edges"], 0.9);
+  EXPECT_NEAR(lines().at(2)["volume"], 1, 1e-9);
+  // The nodal metric goes along and gives the same figures.
+  const double mean = lines().at(2)["quality"]["mean"];
+  ASSERT_EQ(run("check a.mesh --sol a.sol --json"), 0) << err;
+  EXPECT_NEAR(lines().at(0)["quality"]["mean"], mean, 1e-9);
+  ASSERT_EQ(run("adapt a.mesh --sol a.sol --iterations 1 -o b.mesh"), 0) << err;
+
+  ASSERT_TRUE(write_medit<3>(unit_box<3>(3), folder / "cube.mesh").ok());
+  ASSERT_EQ(run("adapt cube.mesh --metric constaniso:hx=0.1,hy=0.3,hz=0.3 -o c.msh --json"), 0)
+      << err;
+  EXPECT_GT(lines().at(2)["unit_edges"], 0.8);
+  EXPECT_NEAR(lines().at(2)["volume"], 1, 1e-9);
+  EXPECT_EQ(run("adapt cube.mesh --metric nonsense -o d.mesh"), 2);
+}
+
+TEST_F(Cli, CtrlCWritesTheBestMeshAndNothingElse) {
+  ASSERT_EQ(run("sample t_junction -o t.step"), 0) << err;
+  FILE* pipe = start("mesh t.step -n 6 --iterations 1000 --json -o t.msh");
+  char line[65536];
+  ASSERT_NE(std::fgets(line, sizeof line, pipe), nullptr);
+  const auto pid = static_cast<pid_t>(std::stol(line));
+  bool adapted = false;
+  while (!adapted && std::fgets(line, sizeof line, pipe))
+    adapted = std::string(line).find("\"iteration\":1") != std::string::npos;
+  EXPECT_TRUE(adapted);
+  ::kill(pid, SIGINT);
+  EXPECT_EQ(finish(pipe), 130) << err;
+  EXPECT_EQ(folder.names(), (Names{"t.msh", "t.report.html", "t.report.json", "t.step"}));
+  EXPECT_TRUE(read_msh(folder / "t.msh").ok());
+}
+
+}  // namespace
+}  // namespace lamella
