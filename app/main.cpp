@@ -1,0 +1,164 @@
+// lamella: the window. It is handed readers, meshers and writers here and knows none of them.
+
+#include <QApplication>
+#include <QCommandLineParser>
+#include <QEventLoop>
+#include <QStandardPaths>
+#include <QSurfaceFormat>
+#include <QTimer>
+#include <cstdio>
+
+#include "app/services.h"
+#include "core/base/version.h"
+#include "core/cad/sample_parts.h"
+#include "ui/actions/actions.h"
+#include "ui/main_window.h"
+#include "ui/session/session.h"
+#include "ui/theme.h"
+#include "ui/views/model_view.h"
+#include "ui/views/vtk_view.h"
+
+namespace lamella {
+namespace {
+
+ui::Services make_services() {
+  ui::Services services;
+  services.load_parts = [](const std::filesystem::path& file, const LoadParams& params,
+                           const Progress& progress) { return load_parts(file, params, progress); };
+  services.meshers = [] { return meshers_for(MesherChoice::automatic); };
+  services.run = run;
+  services.export_mesh = [](const std::filesystem::path& file, const MeshState& state,
+                            const Study& study) -> Result<void> {
+    std::vector<InputFile> inputs;
+    for (const std::string& input : study.inputs)
+      if (Result<InputFile> described = describe_input(input); described)
+        inputs.push_back(*described);
+    const Result<ExportCertificate> written = export_mesh(file, state, study, inputs);
+    return written ? Result<void>() : Result<void>(written.error());
+  };
+  services.sample_part = [](const std::string& name) -> Result<std::filesystem::path> {
+    const std::filesystem::path folder =
+        QStandardPaths::writableLocation(QStandardPaths::CacheLocation).toStdString() + "/samples";
+    std::error_code ec;
+    std::filesystem::create_directories(folder, ec);
+    const std::filesystem::path file = folder / (name + ".step");
+    if (const Result<void> written = write_sample(name, file); !written) return written.error();
+    return file;
+  };
+  services.read_mesh = [](const std::filesystem::path& file) { return read_mesh(file); };
+  return services;
+}
+
+/// What to do without a user: make pictures and leave.
+struct Script {
+  bool run = false;
+  int iteration = -1;  ///< picture as soon as this one is there; -1: of the finished run
+  bool cut = false;    ///< with the model cut open
+  QString color;       ///< body, quality, thickness or layers
+  QString screenshot;  ///< picture of the window
+  QString section;     ///< picture of the 3D view, cut open
+  bool any() const { return run || !screenshot.isEmpty() || !section.isEmpty(); }
+};
+
+/// Lets the window work until `done` holds, then a moment longer to be drawn.
+template <class Done>
+void wait_until(Done done) {
+  QEventLoop loop;
+  QTimer timer;
+  QObject::connect(&timer, &QTimer::timeout, &loop, [&] {
+    if (done()) loop.quit();
+  });
+  timer.start(20);
+  loop.exec();
+  QTimer::singleShot(300, &loop, &QEventLoop::quit);
+  loop.exec();
+}
+
+bool save(const QImage& picture, const QString& file) {
+  if (!picture.isNull() && picture.save(file)) return true;
+  std::fprintf(stderr, "lamella: cannot write the picture %s\n", qPrintable(file));
+  return false;
+}
+
+int play(ui::MainWindow& window, const Script& script) {
+  ui::Session& session = window.session();
+  bool failed = false;
+  QObject::connect(
+      &session, &ui::Session::failed, &session, [&](const QString& message, const QString& hint) {
+        std::fprintf(stderr, "lamella: %s %s\n", qPrintable(message), qPrintable(hint));
+        failed = true;
+      });
+  const auto idle = [&] { return session.activity() == ui::Activity::idle; };
+  wait_until(idle);
+  if (script.run && !failed) {
+    session.run();
+    wait_until([&] {
+      return idle() || (script.iteration >= 0 &&
+                        static_cast<int>(session.iterations().size()) > script.iteration);
+    });
+  }
+  if (failed) return exit_code(Code::bad_input);
+  bool saved = true;
+  const QStringList colors{"body", "quality", "thickness", "layers"};
+  if (const auto color = colors.indexOf(script.color); color >= 0)
+    window.view().set_color_by(ui::ColorBy(color));
+  if (script.cut) window.actions()[ui::Act::section]->setChecked(true);
+  if (!script.screenshot.isEmpty()) {
+    wait_until([] { return true; });
+    saved = save(window.grab().toImage(), script.screenshot);
+  }
+  if (!script.section.isEmpty()) {
+    window.view().look_at_section();
+    wait_until([] { return true; });
+    saved = save(window.view().picture(), script.section) && saved;
+  }
+  session.cancel();
+  wait_until(idle);
+  return saved ? 0 : exit_code(Code::io);
+}
+
+}  // namespace
+}  // namespace lamella
+
+int main(int argc, char** argv) {
+  using namespace lamella;
+  QSurfaceFormat::setDefaultFormat(ui::VtkView::format());
+  QApplication application(argc, argv);
+  QApplication::setApplicationName("lamella");
+  QApplication::setApplicationVersion(QString::fromStdString(std::string(version())));
+  QApplication::setDesktopFileName("org.lamella.Lamella");
+
+  QCommandLineParser parser;
+  parser.setApplicationDescription(
+      "Anisotropic tetrahedral meshes with n layers through every wall.");
+  parser.addHelpOption();
+  parser.addVersionOption();
+  parser.addPositionalArgument("files", "STEP or STL parts, or one mesh (.msh, .vtu, .mesh)",
+                               "[FILE...]");
+  const auto option = [&](const QString& name, const QString& text, const QString& value = {}) {
+    QCommandLineOption o(name, text, value);
+    o.setFlags(QCommandLineOption::HiddenFromHelp);
+    parser.addOption(o);
+  };
+  option("run", "mesh the parts");
+  option("iteration", "picture while the run goes on, after this iteration", "K");
+  option("cut", "picture with a section");
+  option("color", "body, quality, thickness or layers", "FIELD");
+  option("screenshot", "picture of the window, then leave", "FILE");
+  option("section", "picture of a section, then leave", "FILE");
+  parser.process(application);
+
+  Script script;
+  script.run = parser.isSet("run");
+  if (parser.isSet("iteration")) script.iteration = parser.value("iteration").toInt();
+  script.cut = parser.isSet("cut");
+  script.color = parser.value("color");
+  script.screenshot = parser.value("screenshot");
+  script.section = parser.value("section");
+
+  ui::apply_theme(application);
+  ui::MainWindow window(make_services());
+  window.show();
+  window.open_files(parser.positionalArguments());
+  return script.any() ? play(window, script) : QApplication::exec();
+}

@@ -1,0 +1,368 @@
+#include "ui/main_window.h"
+
+#include <gtest/gtest.h>
+
+#include <QDropEvent>
+#include <QLabel>
+#include <QMimeData>
+#include <QSignalSpy>
+#include <QSlider>
+#include <QSpinBox>
+#include <QTest>
+#include <QTreeView>
+#include <fstream>
+
+#include "tests/support/fake_services.h"
+#include "tests/support/temporary_folder.h"
+#include "ui/actions/actions.h"
+#include "ui/models/body_model.h"
+#include "ui/panels/banner.h"
+#include "ui/session/session.h"
+#include "ui/views/model_view.h"
+#include "ui/views/vtk_view.h"
+
+namespace lamella::ui {
+namespace {
+
+/// A closed box as an ASCII STL.
+void write_box_stl(const std::filesystem::path& file, const Vec<3>& size) {
+  const std::array<std::array<int, 3>, 12> triangles{{{0, 2, 1},
+                                                      {1, 2, 3},
+                                                      {4, 5, 6},
+                                                      {5, 7, 6},
+                                                      {0, 1, 4},
+                                                      {1, 5, 4},
+                                                      {2, 6, 3},
+                                                      {3, 6, 7},
+                                                      {0, 4, 2},
+                                                      {2, 4, 6},
+                                                      {1, 3, 5},
+                                                      {3, 7, 5}}};
+  std::ofstream out(file);
+  out << "solid box\n";
+  for (const auto& t : triangles) {
+    out << "facet normal 0 0 0\nouter loop\n";
+    for (const int v : t)
+      out << "vertex " << (v & 1 ? size[0] : 0) << ' ' << (v & 2 ? size[1] : 0) << ' '
+          << (v & 4 ? size[2] : 0) << '\n';
+    out << "endloop\nendfacet\n";
+  }
+  out << "endsolid box\n";
+}
+
+class MainWindowTest : public testing::Test {
+ protected:
+  MainWindowTest() : window_(fake_.make()) {
+    write_box_stl(folder_ / "box.stl", {30, 20, 4});
+    window_.show();
+    EXPECT_TRUE(QTest::qWaitForWindowExposed(&window_));
+  }
+
+  Session& session() { return window_.session(); }
+  QAction* action(Act act) { return window_.actions()[act]; }
+
+  bool wait_idle() {
+    return QTest::qWaitFor([this] { return session().activity() == Activity::idle; }, 20000);
+  }
+
+  void open(const std::string& name) {
+    window_.open_files({QString::fromStdString((folder_ / name).string())});
+    ASSERT_TRUE(wait_idle());
+  }
+
+  void run() {
+    action(Act::run)->trigger();
+    ASSERT_TRUE(wait_idle());
+  }
+
+  /// Share of the view's pixels that differ from `other`.
+  double difference(const QImage& a, const QImage& b) {
+    if (a.size() != b.size()) return 1;
+    int differing = 0;
+    for (int y = 0; y < a.height(); ++y)
+      for (int x = 0; x < a.width(); ++x) differing += a.pixel(x, y) != b.pixel(x, y);
+    return differing / (double(a.width()) * a.height());
+  }
+
+  test::TemporaryFolder folder_;
+  test::FakeServices fake_;
+  MainWindow window_;
+};
+
+TEST_F(MainWindowTest, EmptyWindowOffersToOpenAndNothingElse) {
+  EXPECT_TRUE(session().empty());
+  EXPECT_TRUE(action(Act::open)->isEnabled());
+  for (const Act act : {Act::run, Act::cancel, Act::export_mesh, Act::section, Act::save_picture})
+    EXPECT_FALSE(action(act)->isEnabled());
+  EXPECT_FALSE(window_.view().isVisible());
+}
+
+TEST_F(MainWindowTest, OpenedPartIsShownAndListed) {
+  open("box.stl");
+  ASSERT_EQ(session().parts().size(), 1u);
+  EXPECT_TRUE(window_.view().isVisible());
+  EXPECT_TRUE(action(Act::run)->isEnabled());
+  EXPECT_EQ(session().selected(), 0);
+  EXPECT_TRUE(window_.windowTitle().startsWith("box"));
+  QTest::qWait(50);
+  const QImage picture = window_.view().picture();
+  ASSERT_FALSE(picture.isNull());
+  // The part stands in the middle of the picture, the background in its corner.
+  EXPECT_NE(picture.pixel(picture.width() / 2, picture.height() / 2), picture.pixel(3, 3));
+}
+
+TEST_F(MainWindowTest, UnitOfAnStlIsToldAndCanBeChanged) {
+  open("box.stl");
+  EXPECT_TRUE(window_.banner().isVisible());
+  EXPECT_TRUE(window_.banner().message().contains("30 × 20 × 4 mm"));
+  session().open({folder_ / "box.stl"}, false, 25.4);
+  ASSERT_TRUE(wait_idle());
+  EXPECT_NEAR(session().parts()[0].cad_volume, 30 * 20 * 4 * std::pow(25.4, 3), 1);
+}
+
+TEST_F(MainWindowTest, BadFileGivesABannerWithAHintAndKeepsTheStudy) {
+  open("box.stl");
+  std::ofstream(folder_ / "bad.step") << "this is no STEP file\n";
+  open("bad.step");
+  EXPECT_TRUE(window_.banner().isVisible());
+  EXPECT_TRUE(window_.banner().message().contains("bad.step"));
+  EXPECT_FALSE(window_.banner().hint().isEmpty());
+  EXPECT_EQ(session().parts().size(), 1u);
+  EXPECT_TRUE(action(Act::open)->isEnabled());
+}
+
+TEST_F(MainWindowTest, MissingFileGivesABanner) {
+  open("nowhere.stl");
+  EXPECT_TRUE(window_.banner().isVisible());
+  EXPECT_TRUE(session().empty());
+}
+
+TEST_F(MainWindowTest, RunFillsTheConvergenceAndShowsTheLastMesh) {
+  open("box.stl");
+  fake_.step = std::chrono::milliseconds(20);
+  run();
+  EXPECT_EQ(session().iterations().size(), 7u);
+  EXPECT_EQ(session().shown(), 6);
+  EXPECT_TRUE(session().outcome()->converged);
+  EXPECT_TRUE(action(Act::export_mesh)->isEnabled());
+  const auto& record = session().iterations().back().record;
+  EXPECT_TRUE(window_.findChild<QLabel*>("counts")->text().contains(
+      QLocale().toString(qulonglong(record.nodes))));
+}
+
+TEST_F(MainWindowTest, CancelKeepsTheBestMeshAndARunCanFollow) {
+  open("box.stl");
+  fake_.step = std::chrono::milliseconds(300);
+  action(Act::run)->trigger();
+  ASSERT_TRUE(QTest::qWaitFor([this] { return !session().iterations().empty(); }, 10000));
+  EXPECT_EQ(session().activity(), Activity::running);
+  EXPECT_FALSE(action(Act::run)->isEnabled());
+  QElapsedTimer clock;
+  clock.start();
+  action(Act::cancel)->trigger();
+  ASSERT_TRUE(wait_idle());
+  EXPECT_LT(clock.elapsed(), 1500);
+  EXPECT_TRUE(session().outcome()->cancelled);
+  EXPECT_NE(session().shown_state(), nullptr);
+  fake_.step = std::chrono::milliseconds(10);
+  run();
+  EXPECT_EQ(session().iterations().size(), 7u);
+  EXPECT_FALSE(session().outcome()->cancelled);
+}
+
+TEST_F(MainWindowTest, LookingBackIsNotInterruptedByNewIterations) {
+  open("box.stl");
+  fake_.step = std::chrono::milliseconds(100);
+  action(Act::run)->trigger();
+  ASSERT_TRUE(QTest::qWaitFor([this] { return session().iterations().size() > 2; }, 10000));
+  window_.findChild<QSlider*>("iteration_slider")->setValue(0);
+  const std::size_t before = session().iterations().size();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return session().iterations().size() > before; }, 10000));
+  EXPECT_EQ(session().shown(), 0);
+  EXPECT_EQ(session().shown_state(), session().iterations().front().state);
+  ASSERT_TRUE(wait_idle());
+}
+
+TEST_F(MainWindowTest, SectionCutsTheMeshByWholeElements) {
+  open("box.stl");
+  fake_.step = std::chrono::milliseconds(10);
+  run();
+  const std::size_t whole = window_.view().scene()->shown_elements();
+  EXPECT_EQ(whole, session().shown_state()->mesh.element_count());
+  action(Act::section)->setChecked(true);
+  QTest::qWait(50);
+  const std::size_t half = window_.view().scene()->shown_elements();
+  EXPECT_LT(half, whole);
+  EXPECT_GT(half, whole / 3);
+  // Both sides together have everything, and the cut elements twice.
+  action(Act::flip)->trigger();
+  QTest::qWait(50);
+  EXPECT_GE(half + window_.view().scene()->shown_elements(), whole);
+  window_.findChild<QSlider*>("section_position")->setValue(100);
+  QTest::qWait(50);
+  EXPECT_NE(window_.view().scene()->shown_elements(), half);
+  action(Act::section)->setChecked(false);
+  QTest::qWait(50);
+  EXPECT_EQ(window_.view().scene()->shown_elements(), whole);
+}
+
+TEST_F(MainWindowTest, SectionPlaneIsDraggedByItsKnob) {
+  open("box.stl");
+  action(Act::section_x)->trigger();
+  QTest::qWait(50);
+  VtkView* view = window_.view().vtk_view();
+  const Section start = *window_.view().section();
+  const QPointF knob = view->project(start.origin);
+  const QPointF tip = view->project(start.origin + start.normal * (74 * view->pixel_size()));
+  const QPointF by = (tip - knob) / 2;
+  QTest::mousePress(view, Qt::LeftButton, {}, knob.toPoint());
+  QTest::mouseMove(view, (knob + by).toPoint());
+  QTest::mouseRelease(view, Qt::LeftButton, {}, (knob + by).toPoint());
+  const Section moved = *window_.view().section();
+  // Half the shaft on the screen is half the shaft in space, along the normal only.
+  EXPECT_NEAR((moved.origin - start.origin).dot(start.normal), 37 * view->pixel_size(),
+              2 * view->pixel_size());
+  EXPECT_LT((moved.normal - start.normal).norm(), 1e-12);
+}
+
+TEST_F(MainWindowTest, ColoringChangesThePictureAndBringsALegend) {
+  open("box.stl");
+  fake_.step = std::chrono::milliseconds(10);
+  run();
+  QTest::qWait(50);
+  const QImage plain = window_.view().picture();
+  EXPECT_TRUE(window_.view().scene()->legend().title.isEmpty());
+  for (const ColorBy by : {ColorBy::quality, ColorBy::thickness, ColorBy::layers}) {
+    window_.view().set_color_by(by);
+    QTest::qWait(50);
+    EXPECT_FALSE(window_.view().scene()->legend().title.isEmpty());
+    EXPECT_GT(difference(plain, window_.view().picture()), 0.05);
+  }
+}
+
+TEST_F(MainWindowTest, BodySettingsAreEditedAndUndone) {
+  open("box.stl");
+  auto* tree = window_.findChild<QTreeView*>("bodies");
+  QAbstractItemModel* model = tree->model();
+  EXPECT_TRUE(model->setData(model->index(0, BodyModel::layers), 8));
+  EXPECT_EQ(session().body(0).layers, 8);
+  EXPECT_EQ(window_.findChild<QSpinBox*>("layers")->value(), 8);
+  EXPECT_TRUE(model->setData(model->index(0, BodyModel::h_min), 0.25));
+  EXPECT_EQ(session().body(0).h_min, 0.25);
+  EXPECT_TRUE(model->setData(model->index(0, BodyModel::h_min), 0.0));
+  EXPECT_FALSE(session().body(0).h_min.has_value());
+  EXPECT_FALSE(model->setData(model->index(0, BodyModel::layers), 0));
+  action(Act::undo)->trigger();
+  EXPECT_EQ(session().body(0).h_min, 0.25);
+  action(Act::undo)->trigger();
+  action(Act::undo)->trigger();
+  EXPECT_EQ(session().body(0).layers, 4);
+  action(Act::redo)->trigger();
+  EXPECT_EQ(session().body(0).layers, 8);
+}
+
+TEST_F(MainWindowTest, SettingsChangedAfterARunAreTold) {
+  open("box.stl");
+  fake_.step = std::chrono::milliseconds(10);
+  run();
+  EXPECT_FALSE(session().outdated());
+  window_.findChild<QSpinBox*>("layers")->setValue(6);
+  EXPECT_TRUE(session().outdated());
+  action(Act::undo)->trigger();
+  EXPECT_FALSE(session().outdated());
+}
+
+TEST_F(MainWindowTest, HiddenBodyLeavesThePicture) {
+  open("box.stl");
+  QTest::qWait(50);
+  const QImage with = window_.view().picture();
+  auto* tree = window_.findChild<QTreeView*>("bodies");
+  tree->model()->setData(tree->model()->index(0, 0), Qt::Unchecked, Qt::CheckStateRole);
+  QTest::qWait(50);
+  EXPECT_GT(difference(with, window_.view().picture()), 0.05);
+}
+
+TEST_F(MainWindowTest, BodiesOfASecondFileAreAddedUnderANameOfTheirOwn) {
+  open("box.stl");
+  window_.open_files({QString::fromStdString((folder_ / "box.stl").string())}, true);
+  ASSERT_TRUE(wait_idle());
+  ASSERT_EQ(session().parts().size(), 2u);
+  EXPECT_NE(session().body(0).name, session().body(1).name);
+  action(Act::remove)->trigger();
+  EXPECT_EQ(session().parts().size(), 1u);
+}
+
+TEST_F(MainWindowTest, ExportTellsSuccessAndFailure) {
+  open("box.stl");
+  fake_.step = std::chrono::milliseconds(10);
+  run();
+  QSignalSpy exported(&session(), &Session::exported);
+  session().export_mesh(folder_ / "box.msh");
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(exported.count(), 1);
+  EXPECT_EQ(fake_.exports, 1);
+  session().export_mesh(folder_.path() / "no_such_folder" / "box.msh");
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(exported.count(), 1);
+  EXPECT_TRUE(window_.banner().message().contains("no_such_folder"));
+}
+
+TEST_F(MainWindowTest, DroppedFileIsOpened) {
+  QMimeData data;
+  data.setUrls({QUrl::fromLocalFile(QString::fromStdString((folder_ / "box.stl").string()))});
+  // Qt hands a drop only to a widget that has let the drag in.
+  QDragEnterEvent enter(QPoint(100, 100), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+  QApplication::sendEvent(&window_, &enter);
+  ASSERT_TRUE(enter.isAccepted());
+  QDropEvent drop(QPointF(100, 100), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+  QApplication::sendEvent(&window_, &drop);
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(session().parts().size(), 1u);
+}
+
+TEST_F(MainWindowTest, MeshFileIsShownWithoutParts) {
+  window_.open_files({QString::fromStdString((folder_ / "any.msh").string())});
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(window_.view().scene()->shown_elements(), 4u * 3 * 2 * 6);
+  EXPECT_FALSE(action(Act::run)->isEnabled());
+  EXPECT_TRUE(action(Act::export_mesh)->isEnabled());
+}
+
+TEST_F(MainWindowTest, ClosingDuringARunStopsIt) {
+  open("box.stl");
+  fake_.step = std::chrono::milliseconds(400);
+  action(Act::run)->trigger();
+  QTest::qWait(30);
+  window_.close();
+  EXPECT_TRUE(wait_idle());
+}
+
+/// Pictures of the main states for a person to judge: LAMELLA_PICTURES names the folder.
+TEST_F(MainWindowTest, StatesCanBePictured) {
+  const QString to = qEnvironmentVariable("LAMELLA_PICTURES");
+  const QString part = qEnvironmentVariable("LAMELLA_PICTURED_PART",
+                                            QString::fromStdString((folder_ / "box.stl").string()));
+  const auto keep = [&](const char* name) {
+    QTest::qWait(200);
+    const QPixmap picture = window_.grab();
+    EXPECT_EQ(picture.size(), window_.size() * window_.devicePixelRatio());
+    if (to.isEmpty()) return;
+    EXPECT_TRUE(picture.save(to + "/" + name + ".png"));
+  };
+  keep("empty");
+  window_.open_files({part});
+  ASSERT_TRUE(wait_idle());
+  keep("part");
+  fake_.step = std::chrono::milliseconds(400);
+  action(Act::run)->trigger();
+  ASSERT_TRUE(QTest::qWaitFor([this] { return session().iterations().size() > 3; }, 10000));
+  keep("running");
+  ASSERT_TRUE(wait_idle());
+  action(Act::section)->setChecked(true);
+  keep("section");
+  window_.view().set_color_by(ColorBy::thickness);
+  keep("thickness");
+}
+
+}  // namespace
+}  // namespace lamella::ui

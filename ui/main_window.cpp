@@ -1,0 +1,441 @@
+#include "ui/main_window.h"
+
+#include <QCloseEvent>
+#include <QDragEnterEvent>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QLabel>
+#include <QMenuBar>
+#include <QMimeData>
+#include <QProgressBar>
+#include <QSplitter>
+#include <QStackedWidget>
+#include <QStatusBar>
+#include <QTabWidget>
+#include <QToolBar>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <cmath>
+
+#include "ui/actions/actions.h"
+#include "ui/panels/banner.h"
+#include "ui/panels/bodies_panel.h"
+#include "ui/panels/convergence_panel.h"
+#include "ui/panels/log_panel.h"
+#include "ui/panels/report_panel.h"
+#include "ui/panels/welcome.h"
+#include "ui/session/session.h"
+#include "ui/theme.h"
+#include "ui/views/model_view.h"
+
+namespace lamella::ui {
+namespace {
+
+QString duration(double seconds) {
+  const int s = static_cast<int>(std::lround(seconds));
+  return QString("%1:%2").arg(s / 60).arg(s % 60, 2, 10, QChar('0'));
+}
+
+bool is_mesh(const QString& file) {
+  const QString suffix = QFileInfo(file).suffix().toLower();
+  return suffix == "mesh" || suffix == "msh" || suffix == "vtu";
+}
+
+QStringList local_files(const QMimeData* data) {
+  QStringList files;
+  for (const QUrl& url : data->urls())
+    if (url.isLocalFile()) files << url.toLocalFile();
+  return files;
+}
+
+}  // namespace
+
+MainWindow::MainWindow(Services services, QWidget* parent)
+    : QMainWindow(parent),
+      session_(new Session(std::move(services), this)),
+      actions_(new Actions(this)) {
+  setAcceptDrops(true);
+  resize(1440, 920);
+  make_body();
+  make_menus();
+  make_tool_bar();
+  make_status_bar();
+  connect_session();
+  connect_actions();
+  update_actions();
+  update_title();
+  update_status();
+}
+
+MainWindow::~MainWindow() {
+  // Its worker may still report while the widgets below it are taken apart.
+  session_->disconnect();
+}
+
+void MainWindow::make_body() {
+  auto* central = new QWidget;
+  auto* layout = new QVBoxLayout(central);
+  layout->setContentsMargins(10, 10, 10, 10);
+  layout->setSpacing(8);
+  banner_ = new Banner;
+  layout->addWidget(banner_);
+
+  rows_ = new QSplitter(Qt::Vertical);
+  columns_ = new QSplitter(Qt::Horizontal);
+  bodies_ = new BodiesPanel(*session_, *actions_);
+  bodies_->setMinimumWidth(270);
+  stack_ = new QStackedWidget;
+  welcome_ = new Welcome(*actions_);
+  view_ = new ModelView(*session_, *actions_);
+  stack_->addWidget(welcome_);
+  stack_->addWidget(view_);
+  columns_->addWidget(bodies_);
+  columns_->addWidget(stack_);
+  columns_->setStretchFactor(1, 1);
+  columns_->setSizes({310, 1100});
+
+  auto* panel = new QFrame;
+  panel->setObjectName("panel");
+  auto* inner = new QVBoxLayout(panel);
+  inner->setContentsMargins(1, 1, 1, 1);
+  results_ = new QTabWidget;
+  results_->setDocumentMode(true);
+  results_->addTab(new ConvergencePanel(*session_), tr("Convergence"));
+  results_->addTab(new ReportPanel(*session_), tr("Report"));
+  auto* log = new LogPanel;
+  results_->addTab(log, tr("Log"));
+  inner->addWidget(results_);
+  rows_->addWidget(columns_);
+  rows_->addWidget(panel);
+  rows_->setStretchFactor(0, 1);
+  rows_->setSizes({560, 250});
+  for (QSplitter* splitter : {rows_, columns_}) {
+    splitter->setHandleWidth(8);
+    splitter->setChildrenCollapsible(false);
+  }
+  layout->addWidget(rows_, 1);
+  setCentralWidget(central);
+  connect(session_, &Session::logged, log, &LogPanel::add);
+  connect(welcome_, &Welcome::sample_chosen, this, [this](const QString& name) {
+    banner_->hide();
+    session_->open_sample(name.toStdString());
+  });
+}
+
+void MainWindow::make_menus() {
+  const auto fill = [this](const QString& title, std::initializer_list<Act> acts) {
+    QMenu* menu = menuBar()->addMenu(title);
+    for (const Act act : acts) {
+      if (act == Act::count) {
+        menu->addSeparator();
+      } else {
+        menu->addAction((*actions_)[act]);
+      }
+    }
+  };
+  constexpr Act line = Act::count;
+  fill(tr("&File"), {Act::open, Act::add, Act::remove, line, Act::export_mesh, Act::save_picture,
+                     line, Act::quit});
+  fill(tr("&Edit"), {Act::undo, Act::redo});
+  fill(tr("&Mesh"), {Act::run, Act::cancel});
+  fill(tr("&View"), {Act::section,
+                     Act::section_x,
+                     Act::section_y,
+                     Act::section_z,
+                     Act::flip,
+                     line,
+                     Act::edges,
+                     Act::features,
+                     Act::perspective,
+                     line,
+                     Act::fit,
+                     Act::view_iso,
+                     Act::view_front,
+                     Act::view_back,
+                     Act::view_left,
+                     Act::view_right,
+                     Act::view_top,
+                     Act::view_bottom,
+                     line,
+                     Act::show_bodies,
+                     Act::show_results});
+  fill(tr("&Help"), {Act::about});
+}
+
+void MainWindow::make_tool_bar() {
+  auto* bar = addToolBar(tr("Main"));
+  bar->setMovable(false);
+  bar->setContextMenuPolicy(Qt::PreventContextMenu);
+  bar->setIconSize(QSize(20, 20));
+  bar->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  const auto add = [&](Act act, const QString& text, const char* name = nullptr) {
+    QAction* action = (*actions_)[act];
+    action->setIconText(text);
+    bar->addAction(action);
+    if (name) bar->widgetForAction(action)->setObjectName(name);
+  };
+  add(Act::open, tr("Open"));
+  bar->addSeparator();
+  add(Act::run, tr("Run"), "run");
+  add(Act::cancel, tr("Cancel"));
+  bar->addSeparator();
+  add(Act::section, tr("Section"));
+  add(Act::export_mesh, tr("Export"));
+  add(Act::save_picture, tr("Picture"));
+  auto* space = new QWidget;
+  space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+  bar->addWidget(space);
+  bar->addAction((*actions_)[Act::undo]);
+  bar->addAction((*actions_)[Act::redo]);
+  for (const Act act : {Act::undo, Act::redo})
+    if (auto* button = qobject_cast<QToolButton*>(bar->widgetForAction((*actions_)[act])))
+      button->setToolButtonStyle(Qt::ToolButtonIconOnly);
+}
+
+void MainWindow::make_status_bar() {
+  counts_ = new QLabel;
+  counts_->setObjectName("counts");
+  state_ = new QLabel;
+  state_->setObjectName("state");
+  state_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  progress_ = new QProgressBar;
+  progress_->setRange(0, 1000);
+  progress_->setTextVisible(false);
+  progress_->setFixedWidth(240);
+  progress_->hide();
+  counts_->setContentsMargins(12, 5, 0, 5);
+  state_->setContentsMargins(0, 5, 12, 5);
+  statusBar()->addWidget(counts_, 1);
+  statusBar()->addPermanentWidget(state_);
+  statusBar()->addPermanentWidget(progress_);
+  statusBar()->setContentsMargins(0, 0, 10, 0);
+  statusBar()->setSizeGripEnabled(false);
+}
+
+void MainWindow::connect_session() {
+  const auto refresh = [this] {
+    update_actions();
+    update_title();
+    update_status();
+  };
+  connect(session_, &Session::parts_changed, this, refresh);
+  connect(session_, &Session::study_changed, this, refresh);
+  connect(session_, &Session::activity_changed, this, refresh);
+  connect(session_, &Session::iterations_changed, this, refresh);
+  connect(session_, &Session::shown_changed, this, refresh);
+  connect(session_, &Session::selection_changed, this, refresh);
+  connect(session_, &Session::progressed, this, &MainWindow::show_progress);
+  connect(session_, &Session::run_finished, this, &MainWindow::report_run);
+  connect(session_, &Session::failed, this, [this](const QString& message, const QString& hint) {
+    banner_->show_message(Banner::Kind::error, message, hint);
+  });
+  connect(session_, &Session::exported, this, [this](const QString& file) {
+    banner_->show_message(Banner::Kind::done, tr("Mesh written"), file);
+  });
+  connect(session_, &Session::unit_assumed, this, [this](const QString& file, const QString& size) {
+    const auto again = [this, file](double unit) {
+      return [this, file, unit] { session_->open({file.toStdString()}, false, unit); };
+    };
+    banner_->show_message(
+        Banner::Kind::info, tr("An STL has no unit: read as millimeters, %1.").arg(size),
+        tr("If that is not its size, read it again in its own unit."),
+        {{tr("Inches"), again(25.4)}, {tr("Centimeters"), again(10)}, {tr("Meters"), again(1000)}});
+  });
+}
+
+void MainWindow::connect_actions() {
+  const Actions& act = *actions_;
+  connect(act[Act::open], &QAction::triggered, this, [this] { ask_open(false); });
+  connect(act[Act::add], &QAction::triggered, this, [this] { ask_open(true); });
+  connect(act[Act::remove], &QAction::triggered, this,
+          [this] { session_->remove_part(session_->selected()); });
+  connect(act[Act::export_mesh], &QAction::triggered, this, &MainWindow::ask_export);
+  connect(act[Act::save_picture], &QAction::triggered, this, &MainWindow::ask_picture);
+  connect(act[Act::quit], &QAction::triggered, this, &QWidget::close);
+  connect(act[Act::run], &QAction::triggered, this, [this] {
+    banner_->hide();
+    results_->setCurrentIndex(0);
+    session_->run();
+  });
+  connect(act[Act::cancel], &QAction::triggered, session_, &Session::cancel);
+  QUndoStack* undo = session_->undo_stack();
+  connect(act[Act::undo], &QAction::triggered, undo, &QUndoStack::undo);
+  connect(act[Act::redo], &QAction::triggered, undo, &QUndoStack::redo);
+  connect(undo, &QUndoStack::indexChanged, this, &MainWindow::update_actions);
+  connect(act[Act::show_bodies], &QAction::toggled, bodies_, &QWidget::setVisible);
+  connect(act[Act::show_results], &QAction::toggled, results_->parentWidget(),
+          &QWidget::setVisible);
+  connect(act[Act::about], &QAction::triggered, this, [this] {
+    banner_->show_message(
+        Banner::Kind::info, tr("Lamella %1").arg(LAMELLA_VERSION),
+        tr("Anisotropic tetrahedral meshes for injection molding. Apache License 2.0. "
+           "Uses Qt, VTK, Open CASCADE, Netgen, Eigen and oneTBB."));
+  });
+}
+
+void MainWindow::update_actions() {
+  const Actions& act = *actions_;
+  const bool idle = session_->activity() == Activity::idle;
+  const bool shown = !session_->empty();
+  act[Act::open]->setEnabled(idle);
+  act[Act::add]->setEnabled(idle && !session_->parts().empty());
+  act[Act::remove]->setEnabled(idle && session_->selected() >= 0);
+  act[Act::run]->setEnabled(session_->can_run());
+  act[Act::cancel]->setEnabled(!idle && !session_->cancelling());
+  act[Act::export_mesh]->setEnabled(idle && session_->shown_state() != nullptr);
+  act[Act::undo]->setEnabled(session_->undo_stack()->canUndo());
+  act[Act::redo]->setEnabled(session_->undo_stack()->canRedo());
+  const QString undo = session_->undo_stack()->undoText();
+  const QString redo = session_->undo_stack()->redoText();
+  act[Act::undo]->setToolTip(undo.isEmpty() ? tr("Undo") : tr("Undo: %1").arg(undo));
+  act[Act::redo]->setToolTip(redo.isEmpty() ? tr("Redo") : tr("Redo: %1").arg(redo));
+  for (int a = int(Act::section); a <= int(Act::section_z); ++a) act[Act(a)]->setEnabled(shown);
+  for (int a = int(Act::fit); a <= int(Act::view_bottom); ++a) act[Act(a)]->setEnabled(shown);
+  act[Act::save_picture]->setEnabled(shown);
+  stack_->setCurrentWidget(shown ? static_cast<QWidget*>(view_) : welcome_);
+}
+
+void MainWindow::update_title() {
+  setWindowTitle(session_->empty()
+                     ? tr("Lamella")
+                     : tr("%1 – Lamella").arg(QString::fromStdString(session_->study().name)));
+}
+
+void MainWindow::update_status() {
+  const Activity activity = session_->activity();
+  if (const int shown = session_->shown(); shown >= 0) {
+    const IterationRecord& record = session_->iterations()[shown].record;
+    QString text = tr("%L1 nodes     %L2 elements").arg(record.nodes).arg(record.elements);
+    if (record.layers.places > 0)
+      text += tr("     layers %1 (5 %: %2)")
+                  .arg(record.layers.mean, 0, 'f', 1)
+                  .arg(record.layers.p5, 0, 'f', 1);
+    counts_->setText(text);
+  } else if (!session_->parts().empty()) {
+    std::size_t triangles = 0;
+    for (const Part& part : session_->parts()) triangles += part.surface.facets.size();
+    const std::size_t bodies = session_->parts().size();
+    counts_->setText((bodies == 1 ? tr("1 body") : tr("%1 bodies").arg(bodies)) +
+                     tr("     %L1 surface triangles").arg(triangles));
+  } else {
+    counts_->clear();
+  }
+  progress_->setVisible(activity != Activity::idle);
+  if (activity != Activity::idle) {
+    progress_->setValue(0);
+    state_->setText(session_->cancelling()            ? tr("Cancelling…")
+                    : activity == Activity::loading   ? tr("Opening…")
+                    : activity == Activity::exporting ? tr("Exporting…")
+                                                      : tr("Running…"));
+    return;
+  }
+  if (session_->empty()) {
+    state_->setText(tr("Ready"));
+  } else if (session_->outdated()) {
+    state_->setText(tr("Settings changed since this mesh: run again"));
+  } else if (const auto& outcome = session_->outcome()) {
+    state_->setText(outcome->cancelled   ? tr("Cancelled, best mesh kept")
+                    : outcome->converged ? tr("Converged in %1 s").arg(outcome->seconds, 0, 'f', 1)
+                                         : tr("Stopped at the iteration limit"));
+  } else {
+    state_->setText(session_->parts().empty() ? tr("Mesh opened") : tr("Ready to run"));
+  }
+}
+
+void MainWindow::show_progress(double fraction, const QString& phase, double seconds_left) {
+  if (session_->activity() == Activity::idle) return;
+  progress_->setValue(static_cast<int>(fraction * 1000));
+  if (session_->cancelling()) return;
+  QString text = phase.isEmpty() ? state_->text() : phase;
+  if (session_->activity() == Activity::running) {
+    text += tr("   %1 %").arg(static_cast<int>(fraction * 100));
+    if (seconds_left >= 0) text += tr("   %1 left").arg(duration(seconds_left));
+  }
+  state_->setText(text);
+}
+
+void MainWindow::report_run() {
+  const auto& outcome = session_->outcome();
+  update_status();
+  if (!outcome) return;
+  if (!outcome->cancelled && !outcome->converged)
+    banner_->show_message(Banner::Kind::info,
+                          tr("The mesh is valid but has not settled within %1 iterations.")
+                              .arg(session_->study().options.iterations),
+                          tr("The report tells where layers are missing. More iterations, or a "
+                             "smaller smallest size at blades, help."));
+}
+
+void MainWindow::open_files(const QStringList& files, bool add) {
+  if (files.isEmpty()) return;
+  banner_->hide();
+  folder_ = QFileInfo(files.front()).absolutePath();
+  if (is_mesh(files.front())) {
+    session_->open_mesh(files.front().toStdString());
+    return;
+  }
+  std::vector<std::filesystem::path> paths;
+  for (const QString& file : files) paths.emplace_back(file.toStdString());
+  session_->open(paths, add);
+}
+
+void MainWindow::ask_open(bool add) {
+  const QStringList files =
+      QFileDialog::getOpenFileNames(this, add ? tr("Add bodies") : tr("Open"), folder_,
+                                    tr("Parts (*.step *.stp *.stl *.STEP *.STP *.STL);;Meshes "
+                                       "(*.msh *.vtu *.mesh);;All files (*)"));
+  open_files(files, add);
+}
+
+void MainWindow::ask_export() {
+  const QString name = QString::fromStdString(session_->study().name) + ".msh";
+  QString filter;
+  QString file = QFileDialog::getSaveFileName(
+      this, tr("Export mesh"), folder_.isEmpty() ? name : folder_ + "/" + name,
+      tr("Gmsh 4.1, with named groups (*.msh);;VTK, with body ids and metric (*.vtu);;"
+         "Medit, with metric (*.mesh)"),
+      &filter);
+  if (file.isEmpty()) return;
+  // A name without an ending gets the one of the chosen kind.
+  const QString suffix = filter.contains("vtu")      ? "vtu"
+                         : filter.contains("*.mesh") ? "mesh"
+                                                     : "msh";
+  if (QFileInfo(file).suffix().isEmpty()) file += "." + suffix;
+  banner_->hide();
+  session_->export_mesh(file.toStdString());
+}
+
+void MainWindow::ask_picture() {
+  const QString name = QString::fromStdString(session_->study().name) + ".png";
+  const QString file = QFileDialog::getSaveFileName(this, tr("Save picture"),
+                                                    folder_.isEmpty() ? name : folder_ + "/" + name,
+                                                    tr("PNG picture (*.png)"));
+  if (file.isEmpty()) return;
+  if (view_->picture().save(file)) {
+    banner_->show_message(Banner::Kind::done, tr("Picture written"), file);
+  } else {
+    banner_->show_message(Banner::Kind::error, tr("%1 could not be written.").arg(file),
+                          tr("Is the folder writable, and does the name end in .png?"));
+  }
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  if (session_->activity() != Activity::idle || local_files(event->mimeData()).isEmpty()) return;
+  event->acceptProposedAction();
+  welcome_->set_dragging(true);
+}
+
+void MainWindow::dragLeaveEvent(QDragLeaveEvent*) { welcome_->set_dragging(false); }
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  welcome_->set_dragging(false);
+  event->acceptProposedAction();
+  open_files(local_files(event->mimeData()));
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  session_->cancel();
+  event->accept();
+}
+
+}  // namespace lamella::ui

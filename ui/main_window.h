@@ -1,0 +1,77 @@
+#pragma once
+
+#include <QMainWindow>
+
+#include "ui/services.h"
+
+class QLabel;
+class QProgressBar;
+class QSplitter;
+class QStackedWidget;
+class QTabWidget;
+
+namespace lamella::ui {
+
+class Actions;
+class Banner;
+class BodiesPanel;
+class ModelView;
+class Session;
+class Welcome;
+
+/// The window: bodies on the left, the model in the middle, results below.
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  explicit MainWindow(Services services, QWidget* parent = nullptr);
+  ~MainWindow() override;
+
+  Session& session() { return *session_; }
+  Actions& actions() { return *actions_; }
+  ModelView& view() { return *view_; }
+  Banner& banner() { return *banner_; }
+
+  /// Opens parts (STEP, STL) or one mesh, by extension; as the menu, a drop and the command line
+  /// do.
+  void open_files(const QStringList& files, bool add = false);
+
+ protected:
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dragLeaveEvent(QDragLeaveEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+  void closeEvent(QCloseEvent* event) override;
+
+ private:
+  void make_menus();
+  void make_tool_bar();
+  void make_body();
+  void make_status_bar();
+  void connect_session();
+  void connect_actions();
+  void update_actions();
+  void update_title();
+  void update_status();
+  void show_progress(double fraction, const QString& phase, double seconds_left);
+  void ask_open(bool add);
+  void ask_export();
+  void ask_picture();
+  void report_run();
+
+  Session* session_;
+  Actions* actions_;
+  ModelView* view_ = nullptr;
+  Banner* banner_ = nullptr;
+  Welcome* welcome_ = nullptr;
+  BodiesPanel* bodies_ = nullptr;
+  QStackedWidget* stack_ = nullptr;
+  QTabWidget* results_ = nullptr;
+  QSplitter* columns_ = nullptr;
+  QSplitter* rows_ = nullptr;
+  QLabel* counts_ = nullptr;
+  QLabel* state_ = nullptr;
+  QProgressBar* progress_ = nullptr;
+  QString folder_;
+};
+
+}  // namespace lamella::ui

@@ -1,0 +1,125 @@
+#include "ui/panels/convergence_panel.h"
+
+#include <QCheckBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QSlider>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <cmath>
+
+#include "ui/session/session.h"
+#include "ui/theme.h"
+#include "ui/views/plot.h"
+
+namespace lamella::ui {
+namespace {
+
+const QColor blue(0x1d, 0x6f, 0xc4);
+
+const QColor amber(0xd0, 0x87, 0x1e);
+
+}  // namespace
+
+ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
+    : QWidget(parent), session_(session) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(6, 6, 6, 8);
+  layout->setSpacing(2);
+  auto* plots = new QHBoxLayout;
+  plots->setSpacing(8);
+  nodes_ = new Plot(tr("Nodes"));
+  nodes_->setObjectName("nodes_plot");
+  layers_ = new Plot(tr("Layers through the walls"));
+  layers_->set_decimals(2);
+  conformity_ = new Plot(tr("Conformity (0 is perfect)"));
+  conformity_->set_decimals(3);
+  for (Plot* plot : {nodes_, layers_, conformity_}) {
+    plots->addWidget(plot, 1);
+    connect(plot, &Plot::clicked, &session, &Session::show_iteration);
+    for (Plot* other : {nodes_, layers_, conformity_})
+      if (other != plot) connect(plot, &Plot::hovered, other, &Plot::set_hovered);
+  }
+  layout->addLayout(plots, 1);
+
+  auto* row = new QHBoxLayout;
+  row->setContentsMargins(12, 0, 14, 0);
+  row->setSpacing(8);
+  auto* text = new QLabel(tr("Iteration"));
+  text->setObjectName("soft");
+  row->addWidget(text);
+  back_ = new QToolButton;
+  back_->setIcon(icon("chevron-left"));
+  back_->setToolTip(tr("Previous iteration"));
+  row->addWidget(back_);
+  slider_ = new QSlider(Qt::Horizontal);
+  slider_->setObjectName("iteration_slider");
+  slider_->setPageStep(1);
+  row->addWidget(slider_, 1);
+  forward_ = new QToolButton;
+  forward_->setIcon(icon("chevron-right"));
+  forward_->setToolTip(tr("Next iteration"));
+  row->addWidget(forward_);
+  position_ = new QLabel;
+  position_->setObjectName("soft");
+  position_->setMinimumWidth(190);
+  row->addWidget(position_);
+  auto* logarithmic = new QCheckBox(tr("Logarithmic nodes"));
+  row->addWidget(logarithmic);
+  layout->addLayout(row);
+
+  connect(logarithmic, &QCheckBox::toggled, nodes_, &Plot::set_logarithmic);
+  connect(slider_, &QSlider::valueChanged, &session, &Session::show_iteration);
+  connect(back_, &QToolButton::clicked, this,
+          [this] { session_.show_iteration(std::max(0, session_.shown() - 1)); });
+  connect(forward_, &QToolButton::clicked, this,
+          [this] { session_.show_iteration(session_.shown() + 1); });
+  connect(&session, &Session::iterations_changed, this, &ConvergencePanel::follow_iterations);
+  connect(&session, &Session::shown_changed, this, &ConvergencePanel::follow_shown);
+  follow_iterations();
+}
+
+void ConvergencePanel::follow_iterations() {
+  Series nodes{tr("nodes"), blue, {}};
+  Series mean{tr("mean"), blue, {}};
+  Series low{tr("5 % quantile"), amber, {}};
+  Series conformity{tr("conformity"), blue, {}};
+  for (const Iteration& it : session_.iterations()) {
+    const bool measured = it.record.layers.places > 0;
+    nodes.values.push_back(static_cast<double>(it.record.nodes));
+    mean.values.push_back(measured ? it.record.layers.mean : std::nan(""));
+    low.values.push_back(measured ? it.record.layers.p5 : std::nan(""));
+    conformity.values.push_back(it.record.conformity);
+  }
+  nodes_->set_series({nodes});
+  layers_->set_series({mean, low});
+  conformity_->set_series({conformity});
+  std::optional<double> asked;
+  for (const BodySettings& body : session_.study().bodies)
+    asked = std::max(asked.value_or(0), static_cast<double>(body.layers));
+  layers_->set_target(session_.iterations().empty() ? std::nullopt : asked, tr("asked"));
+  const QSignalBlocker block(slider_);
+  slider_->setRange(0, std::max(0, static_cast<int>(session_.iterations().size()) - 1));
+  follow_shown();
+}
+
+void ConvergencePanel::follow_shown() {
+  const int shown = session_.shown();
+  const int last = static_cast<int>(session_.iterations().size()) - 1;
+  for (Plot* plot : {nodes_, layers_, conformity_}) plot->set_marked(shown);
+  const QSignalBlocker block(slider_);
+  slider_->setEnabled(last > 0);
+  back_->setEnabled(shown > 0);
+  forward_->setEnabled(shown < last);
+  if (shown < 0) {
+    position_->setText(tr("no mesh yet"));
+    return;
+  }
+  slider_->setValue(shown);
+  const IterationRecord& record = session_.iterations()[shown].record;
+  QString text = record.iteration == 0 ? tr("0: first mesh") : QString::number(record.iteration);
+  if (shown == last && last > 0) text += tr("  (latest)");
+  position_->setText(text);
+}
+
+}  // namespace lamella::ui

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <QWidget>
+
+class QLabel;
+class QSlider;
+class QToolButton;
+
+namespace lamella::ui {
+
+class Plot;
+class Session;
+
+/// Nodes, layers and conformity over the iterations, live, and the slider that looks back.
+class ConvergencePanel : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit ConvergencePanel(Session& session, QWidget* parent = nullptr);
+
+ private:
+  void follow_iterations();
+  void follow_shown();
+
+  Session& session_;
+  Plot* nodes_;
+  Plot* layers_;
+  Plot* conformity_;
+  QSlider* slider_;
+  QLabel* position_;
+  QToolButton* back_;
+  QToolButton* forward_;
+};
+
+}  // namespace lamella::ui

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <QTextBrowser>
+
+namespace lamella::ui {
+
+class Session;
+
+/// What became of each body of the last run, as a table.
+class ReportPanel : public QTextBrowser {
+  Q_OBJECT
+
+ public:
+  explicit ReportPanel(Session& session, QWidget* parent = nullptr);
+
+ private:
+  void refresh();
+
+  Session& session_;
+};
+
+}  // namespace lamella::ui

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <QFrame>
+
+namespace lamella::ui {
+
+class Actions;
+
+/// The empty state: a place to drop files, and sample parts to try.
+class Welcome : public QFrame {
+  Q_OBJECT
+
+ public:
+  explicit Welcome(Actions& actions, QWidget* parent = nullptr);
+  /// Lights up while files are dragged over the window.
+  void set_dragging(bool on);
+
+ Q_SIGNALS:
+  void sample_chosen(const QString& name);
+
+ private:
+  QFrame* drop_zone_;
+};
+
+}  // namespace lamella::ui

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/cad/load_parts.h"
+#include "core/optimize/generate.h"
+#include "core/study/run.h"
+
+namespace lamella::ui {
+
+/// What the window asks of the rest of the program. The window knows no reader, no mesher and no
+/// writer: whoever starts it hands these over. All of them are called from the worker thread.
+struct Services {
+  /// The bodies of a STEP or STL file.
+  std::function<Result<std::vector<Part>>(const std::filesystem::path&, const LoadParams&,
+                                          const Progress&)>
+      load_parts;
+  /// The first-mesh makers, in the order to try.
+  std::function<std::vector<std::shared_ptr<const VolumeMesher>>()> meshers;
+  /// The main loop, see core/study/run.h.
+  std::function<Result<Outcome>(const Study&, const std::vector<Part>&,
+                                const std::vector<std::shared_ptr<const VolumeMesher>>&, Progress,
+                                IterationSink)>
+      run;
+  /// Writes a mesh; the format follows the extension (.msh, .vtu, .mesh).
+  std::function<Result<void>(const std::filesystem::path&, const MeshState&, const Study&)>
+      export_mesh;
+  /// Writes a part made by code and names the file: plate, ribbed_tray, curved_shell, t_junction
+  /// or twisted_tube.
+  std::function<Result<std::filesystem::path>(const std::string& name)> sample_part;
+  /// A volume mesh to look at (.msh, .vtu, .mesh); fields the file has not are left empty.
+  std::function<Result<MeshState>(const std::filesystem::path&)> read_mesh;
+};
+
+}  // namespace lamella::ui

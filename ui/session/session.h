@@ -1,0 +1,122 @@
+#pragma once
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <QUndoStack>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "ui/services.h"
+#include "ui/session/worker.h"
+
+namespace lamella::ui {
+
+/// What the window is busy with.
+enum class Activity { idle, loading, running, exporting };
+
+/// One finished iteration: its record and the mesh it left.
+struct Iteration {
+  IterationRecord record;
+  std::shared_ptr<const MeshState> state;
+};
+
+/// The open study and everything that happens to it; the panels and views only follow it.
+///
+/// Lives in the window's thread. Long work runs on its worker; results arrive by queued calls, so
+/// every member may be read without a lock.
+class Session : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit Session(Services services, QObject* parent = nullptr);
+
+  const Services& services() const { return services_; }
+  const Study& study() const { return *study_; }
+  std::shared_ptr<const Study> study_value() const { return study_; }
+  const std::vector<Part>& parts() const { return *parts_; }
+  /// Settings of part `index`; every part has an entry in the study.
+  const BodySettings& body(int index) const { return study_->bodies[index]; }
+  const std::vector<Iteration>& iterations() const { return iterations_; }
+  const std::optional<Outcome>& outcome() const { return outcome_; }
+  Activity activity() const { return activity_; }
+  bool cancelling() const { return worker_.cancelling(); }
+  /// Nothing to show: neither parts nor a mesh.
+  bool empty() const { return parts_->empty() && iterations_.empty(); }
+  bool can_run() const { return activity_ == Activity::idle && !parts_->empty(); }
+  /// True when the settings differ from those the shown meshes were made with.
+  bool outdated() const;
+  QUndoStack* undo_stack() { return &undo_; }
+
+  /// Index into `iterations` of the one being looked at; -1: none, the parts are shown.
+  int shown() const { return shown_; }
+  std::shared_ptr<const MeshState> shown_state() const;
+  void show_iteration(int index);
+
+  /// Part selected everywhere; -1: none.
+  int selected() const { return selected_; }
+  void select(int part);
+
+  /// Reads a part file and replaces the study, or adds to it. `unit`: mm per unit of an STL.
+  void open(const std::vector<std::filesystem::path>& files, bool add = false, double unit = 1);
+  /// Opens a sample part made by code.
+  void open_sample(const std::string& name);
+  /// Reads a volume mesh just to look at it.
+  void open_mesh(const std::filesystem::path& file);
+  /// Removes one body from the study.
+  void remove_part(int index);
+
+  void run();
+  /// Cancels what is under way.
+  void cancel();
+  /// Writes the shown mesh.
+  void export_mesh(const std::filesystem::path& file);
+
+  /// Changes the study as one undoable step called `what`.
+  void edit(const QString& what, Study after);
+  void edit_body(int index, const QString& what, const BodySettings& after);
+
+ Q_SIGNALS:
+  void parts_changed();
+  void study_changed();
+  void selection_changed();
+  /// An iteration was added, or all were cleared.
+  void iterations_changed();
+  void shown_changed();
+  void activity_changed();
+  /// Fraction in [0, 1]; seconds left, negative while unknown.
+  void progressed(double fraction, const QString& phase, double seconds_left);
+  void run_finished();
+  void exported(const QString& file);
+  void failed(const QString& message, const QString& hint);
+  /// An STL was read without a unit; its size may need another one.
+  void unit_assumed(const QString& file, const QString& size);
+  void logged(const QString& line);
+
+ private:
+  friend class EditStudy;
+  void set_study(std::shared_ptr<const Study> study);
+  void set_activity(Activity activity);
+  void begin(Activity activity, Worker::Job job);
+  void report(const Error& error);
+  void take_parts(std::vector<Part> parts, std::vector<std::string> inputs, bool add);
+  void clear_iterations();
+  void add_iteration(Iteration iteration);
+  void finish_run(Result<Outcome> result);
+
+  Services services_;
+  std::shared_ptr<const Study> study_ = std::make_shared<Study>();
+  std::shared_ptr<const std::vector<Part>> parts_ = std::make_shared<std::vector<Part>>();
+  std::vector<Iteration> iterations_;
+  std::optional<Outcome> outcome_;
+  std::shared_ptr<const Study> run_study_;
+  Activity activity_ = Activity::idle;
+  int shown_ = -1;
+  int selected_ = -1;
+  QUndoStack undo_;
+  QElapsedTimer clock_;
+  Worker worker_;  // last: its destructor waits for the job that uses the rest
+};
+
+}  // namespace lamella::ui

@@ -1,0 +1,67 @@
+#include "ui/session/worker.h"
+
+#include <cassert>
+
+namespace lamella::ui {
+
+Worker::Worker(QObject* parent) : QObject(parent) {
+  timer_.setInterval(40);
+  connect(&timer_, &QTimer::timeout, this, &Worker::sample);
+}
+
+Worker::~Worker() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Worker::start(Job job) {
+  assert(!busy_);
+  busy_ = true;
+  {
+    std::lock_guard lock(mutex_);
+    fraction_ = 0;
+    phase_.clear();
+    fresh_ = true;
+  }
+  timer_.start();
+  thread_ = std::jthread([this, job = std::move(job)](std::stop_token stop) {
+    const Progress progress(
+        [this](double fraction, std::string_view phase) {
+          std::lock_guard lock(mutex_);
+          fraction_ = fraction;
+          phase_ = phase;
+          fresh_ = true;
+        },
+        stop);
+    Done done = job(progress);
+    post([this, done = std::move(done)] {
+      thread_.join();
+      timer_.stop();
+      sample();
+      busy_ = false;
+      if (done) done();
+      Q_EMIT finished();
+    });
+  });
+}
+
+void Worker::cancel() { thread_.request_stop(); }
+
+void Worker::post(std::function<void()> call) {
+  QMetaObject::invokeMethod(this, std::move(call), Qt::QueuedConnection);
+}
+
+void Worker::sample() {
+  double fraction = 0;
+  QString phase;
+  {
+    std::lock_guard lock(mutex_);
+    if (!fresh_) return;
+    fresh_ = false;
+    fraction = fraction_;
+    phase = QString::fromStdString(phase_);
+  }
+  Q_EMIT progressed(fraction, phase);
+}
+
+}  // namespace lamella::ui

@@ -1,0 +1,94 @@
+#include "ui/theme.h"
+
+#include <QApplication>
+#include <QFile>
+#include <QFontDatabase>
+#include <QPainter>
+#include <QPalette>
+#include <QStyleFactory>
+#include <QSvgRenderer>
+#include <algorithm>
+
+// Resources of a static library are only linked when asked for, outside of any namespace.
+static void load_resources() { Q_INIT_RESOURCE(lamella); }
+
+namespace lamella::ui {
+namespace {
+
+QPixmap render(const QString& path, int size, double opacity) {
+  QPixmap pixmap(size, size);
+  pixmap.fill(Qt::transparent);
+  QPainter painter(&pixmap);
+  painter.setOpacity(opacity);
+  QSvgRenderer(path).render(&painter);
+  return pixmap;
+}
+
+}  // namespace
+
+void apply_theme(QApplication& application) {
+  load_resources();
+  application.setStyle(QStyleFactory::create("Fusion"));
+
+  QFont font = application.font();
+  const QStringList families = QFontDatabase::families();
+  for (const char* family : {"Inter", "Noto Sans", "Open Sans", "Cantarell"}) {
+    if (!families.contains(QLatin1String(family))) continue;
+    font.setFamily(QLatin1String(family));
+    break;
+  }
+  font.setPointSizeF(std::max(font.pointSizeF(), 9.5));
+  font.setHintingPreference(QFont::PreferNoHinting);
+  application.setFont(font);
+
+  QPalette palette;
+  palette.setColor(QPalette::Window, theme::window);
+  palette.setColor(QPalette::Base, theme::panel);
+  palette.setColor(QPalette::AlternateBase, theme::window);
+  palette.setColor(QPalette::Button, theme::panel);
+  palette.setColor(QPalette::WindowText, theme::text);
+  palette.setColor(QPalette::Text, theme::text);
+  palette.setColor(QPalette::ButtonText, theme::text);
+  palette.setColor(QPalette::PlaceholderText, theme::faint_text);
+  palette.setColor(QPalette::Highlight, theme::accent);
+  palette.setColor(QPalette::HighlightedText, Qt::white);
+  palette.setColor(QPalette::ToolTipBase, theme::text);
+  palette.setColor(QPalette::ToolTipText, Qt::white);
+  palette.setColor(QPalette::Link, theme::accent);
+  for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
+    palette.setColor(QPalette::Disabled, role, QColor(0xb4, 0xbd, 0xc7));
+  application.setPalette(palette);
+
+  QFile sheet(":/lamella.qss");
+  if (sheet.open(QIODevice::ReadOnly))
+    application.setStyleSheet(QString::fromUtf8(sheet.readAll()));
+  application.setWindowIcon(QIcon(":/icons/lamella.svg"));
+}
+
+QIcon icon(const QString& name) {
+  const QString path = ":/icons/" + name + ".svg";
+  QIcon result;
+  for (const int size : {16, 20, 24, 32, 40, 48}) {
+    result.addPixmap(render(path, size, 1), QIcon::Normal);
+    result.addPixmap(render(path, size, 0.35), QIcon::Disabled);
+  }
+  return result;
+}
+
+QColor body_color(int index, const std::array<double, 3>& rgb) {
+  if (rgb[0] >= 0) {
+    const auto [low, high] = std::minmax_element(rgb.begin(), rgb.end());
+    // The gray CAD programs give by default tells nothing, and bodies side by side must differ.
+    const bool default_gray = *high - *low < 0.06 && *low > 0.3 && *high < 0.9;
+    // Darker than this, mesh edges could not be told from faces.
+    const auto lift = [](double c) { return static_cast<float>(std::max(c, 0.28)); };
+    if (!default_gray) return QColor::fromRgbF(lift(rgb[0]), lift(rgb[1]), lift(rgb[2]));
+  }
+  static const std::array<QColor, 8> palette{QColor(0x7f, 0xa8, 0xd1), QColor(0xe0, 0xa9, 0x6d),
+                                             QColor(0x8f, 0xbf, 0x9f), QColor(0xc9, 0x8b, 0xa6),
+                                             QColor(0x9d, 0x94, 0xc9), QColor(0xd4, 0xc3, 0x6a),
+                                             QColor(0x7d, 0xbd, 0xc0), QColor(0xb5, 0xa4, 0x94)};
+  return palette[static_cast<std::size_t>(index) % palette.size()];
+}
+
+}  // namespace lamella::ui

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <QColor>
+#include <QIcon>
+#include <array>
+
+class QApplication;
+
+namespace lamella::ui {
+
+/// Colors used by name all over the window.
+namespace theme {
+inline const QColor text{0x1f, 0x29, 0x33};
+inline const QColor soft_text{0x52, 0x60, 0x6d};
+inline const QColor faint_text{0x8a, 0x97, 0xa5};
+inline const QColor window{0xf4, 0xf6, 0xf8};
+inline const QColor panel{0xff, 0xff, 0xff};
+inline const QColor border{0xdd, 0xe2, 0xe8};
+inline const QColor accent{0x1d, 0x6f, 0xc4};
+inline const QColor good{0x2f, 0x85, 0x5a};
+inline const QColor warning{0xc0, 0x7a, 0x0b};
+inline const QColor danger{0xc5, 0x3a, 0x30};
+}  // namespace theme
+
+/// Style, palette, font and style sheet of the application.
+void apply_theme(QApplication& application);
+
+/// Icon `name` of resources/icons, with a paler disabled state.
+QIcon icon(const QString& name);
+
+/// Color of body `index`: the one of its file, else the next of a calm palette. `rgb` in [0, 1],
+/// negative for none.
+QColor body_color(int index, const std::array<double, 3>& rgb = {-1, -1, -1});
+
+}  // namespace lamella::ui

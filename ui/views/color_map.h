@@ -1,0 +1,34 @@
+#pragma once
+
+#include <QColor>
+#include <QString>
+#include <vector>
+
+namespace lamella::ui {
+
+/// What the mesh is colored by.
+enum class ColorBy { body, quality, thickness, layers };
+
+/// Colors at equal distances over [0, 1]; interpolated, or in bands of equal width.
+struct ColorMap {
+  std::vector<QColor> stops;
+  int bands = 0;  ///< 0: smooth
+
+  /// Color at t, clamped to [0, 1].
+  QColor at(double t) const;
+};
+
+/// Dark violet to yellow, even in lightness.
+ColorMap sequential_map();
+/// Red (poor) over pale to blue (good).
+ColorMap rating_map();
+
+/// How values became colors; no title: colors need no explanation.
+struct Legend {
+  QString title;
+  double low = 0;
+  double high = 1;
+  ColorMap map;
+};
+
+}  // namespace lamella::ui

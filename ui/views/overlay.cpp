@@ -1,0 +1,156 @@
+#include "ui/views/overlay.h"
+
+#include <vtkCamera.h>
+#include <vtkMatrix4x4.h>
+#include <vtkRenderer.h>
+
+#include <QPainter>
+#include <algorithm>
+#include <cmath>
+
+#include "ui/theme.h"
+#include "ui/views/section_tool.h"
+#include "ui/views/vtk_view.h"
+
+namespace lamella::ui {
+namespace {
+
+/// Largest of 1, 2, 5 times a power of ten that is at most `x`.
+double round_down(double x) {
+  const double power = std::pow(10, std::floor(std::log10(x)));
+  const double lead = x / power;
+  return power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
+}
+
+}  // namespace
+
+Overlay::Overlay(VtkView& view, const SectionTool& tool)
+    : QWidget(&view), view_(view), tool_(tool) {
+  setAttribute(Qt::WA_TransparentForMouseEvents);
+  setAttribute(Qt::WA_NoSystemBackground);
+  connect(&view, &VtkView::rendered, this, &Overlay::follow_camera);
+}
+
+void Overlay::set_legend(const Legend& legend) {
+  legend_ = legend;
+  update();
+}
+
+void Overlay::set_scale_visible(bool on) {
+  scale_visible_ = on;
+  update();
+}
+
+void Overlay::set_handle_visible(bool on) {
+  handle_visible_ = on;
+  update();
+}
+
+void Overlay::follow_camera() {
+  // Painting the overlay makes Qt draw the view again, so it may only follow real changes.
+  std::array<double, 18> now{};
+  const double aspect = view_.height() > 0 ? double(view_.width()) / view_.height() : 1;
+  const vtkMatrix4x4* matrix =
+      view_.renderer()->GetActiveCamera()->GetCompositeProjectionTransformMatrix(aspect, -1, 1);
+  std::copy_n(matrix->GetData(), 16, now.begin());
+  now[16] = view_.width();
+  now[17] = view_.height();
+  if (now == camera_) return;
+  camera_ = now;
+  setGeometry(view_.rect());
+  update();
+}
+
+void Overlay::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  if (handle_visible_) tool_.paint(painter);
+  if (!scale_visible_) return;
+  paint_axes(painter);
+  paint_scale(painter);
+  paint_legend(painter);
+}
+
+void Overlay::paint_legend(QPainter& painter) const {
+  if (legend_.title.isEmpty()) return;
+  constexpr int bar_height = 12;
+  constexpr int bar_width = 230;
+  constexpr int margin = 16;
+  QFont small = font();
+  small.setPointSizeF(small.pointSizeF() - 1);
+  const QRectF box(margin, margin, bar_width + 28, 68);
+  painter.setPen(QPen(theme::border, 1));
+  painter.setBrush(QColor(255, 255, 255, 232));
+  painter.drawRoundedRect(box, 8, 8);
+  painter.setPen(theme::text);
+  QFont bold = font();
+  bold.setWeight(QFont::DemiBold);
+  painter.setFont(bold);
+  painter.drawText(box.adjusted(14, 7, -14, 0), Qt::AlignLeft | Qt::AlignTop, legend_.title);
+
+  const QRectF bar(box.left() + 14, box.top() + 29, bar_width, bar_height);
+  painter.setRenderHint(QPainter::Antialiasing, false);
+  for (int x = 0; x < bar_width; ++x) {
+    painter.fillRect(QRectF(bar.left() + x, bar.top(), 1, bar_height),
+                     legend_.map.at((x + 0.5) / bar_width));
+  }
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setFont(small);
+  painter.setPen(theme::soft_text);
+  constexpr int ticks = 4;
+  for (int k = 0; k <= ticks; ++k) {
+    const double value = legend_.low + (legend_.high - legend_.low) * k / ticks;
+    const double x = bar.left() + bar.width() * k / ticks;
+    const auto align = k == 0 ? Qt::AlignLeft : k == ticks ? Qt::AlignRight : Qt::AlignHCenter;
+    const double left = k == 0 ? x : k == ticks ? x - 60 : x - 30;
+    painter.drawText(QRectF(left, bar.bottom() + 3, 60, 18), int(align) | int(Qt::AlignTop),
+                     QString::number(value, 'g', 3));
+  }
+}
+
+void Overlay::paint_scale(QPainter& painter) const {
+  const double pixel = view_.pixel_size();
+  if (!(pixel > 0)) return;
+  const double length = round_down(pixel * 150);
+  const double width_px = length / pixel;
+  const double right = width() - 20;
+  const double y = height() - 20;
+  painter.setPen(QPen(theme::text, 1.6));
+  painter.drawLine(QPointF(right - width_px, y), QPointF(right, y));
+  painter.drawLine(QPointF(right - width_px, y - 4), QPointF(right - width_px, y + 4));
+  painter.drawLine(QPointF(right, y - 4), QPointF(right, y + 4));
+  painter.setFont(font());
+  painter.drawText(QRectF(right - 200, y - 24, 200, 18), Qt::AlignRight | Qt::AlignVCenter,
+                   tr("%1 mm").arg(length));
+}
+
+void Overlay::paint_axes(QPainter& painter) const {
+  const vtkMatrix4x4* eye = view_.renderer()->GetActiveCamera()->GetViewTransformMatrix();
+  struct Axis {
+    QPointF to;
+    double depth;
+    QColor color;
+    QString name;
+  };
+  const QPointF origin(46, height() - 46);
+  std::array<Axis, 3> axes{Axis{{}, 0, QColor(0xc5, 0x3a, 0x30), "x"},
+                           Axis{{}, 0, QColor(0x2f, 0x85, 0x5a), "y"},
+                           Axis{{}, 0, theme::accent, "z"}};
+  for (int k = 0; k < 3; ++k) {
+    axes[k].to = QPointF(eye->GetElement(0, k), -eye->GetElement(1, k));
+    axes[k].depth = eye->GetElement(2, k);
+  }
+  std::sort(axes.begin(), axes.end(),
+            [](const Axis& a, const Axis& b) { return a.depth < b.depth; });
+  QFont bold = font();
+  bold.setWeight(QFont::DemiBold);
+  painter.setFont(bold);
+  for (const Axis& axis : axes) {
+    painter.setPen(QPen(axis.color, 2.4, Qt::SolidLine, Qt::RoundCap));
+    painter.drawLine(origin, origin + axis.to * 28);
+    const QPointF at = origin + axis.to * 37;
+    painter.drawText(QRectF(at.x() - 9, at.y() - 9, 18, 18), Qt::AlignCenter, axis.name);
+  }
+}
+
+}  // namespace lamella::ui

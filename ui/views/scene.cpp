@@ -1,0 +1,532 @@
+#include "ui/views/scene.h"
+
+#include <vtkActor.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDataSetSurfaceFilter.h>
+#include <vtkExtractGeometry.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkLight.h>
+#include <vtkLookupTable.h>
+#include <vtkPlane.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
+#include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <QCoreApplication>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lamella::ui {
+namespace {
+
+constexpr const char* element_array = "element";
+constexpr const char* node_array = "node";
+
+vtkSmartPointer<vtkPoints> make_points(const std::vector<Vec<3>>& from) {
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(from.size()));
+  for (std::size_t k = 0; k < from.size(); ++k)
+    points->SetPoint(static_cast<vtkIdType>(k), from[k].data());
+  return points;
+}
+
+vtkSmartPointer<vtkPolyData> surface_data(const ReferenceSurface<3>& surface) {
+  vtkNew<vtkCellArray> cells;
+  for (const auto& facet : surface.facets) {
+    const vtkIdType ids[3] = {facet[0], facet[1], facet[2]};
+    cells->InsertNextCell(3, ids);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(make_points(surface.points));
+  data->SetPolys(cells);
+  return data;
+}
+
+vtkSmartPointer<vtkPolyData> feature_data(const ReferenceSurface<3>& surface) {
+  vtkNew<vtkCellArray> cells;
+  for (const auto& edge : surface.feature_edges) {
+    const vtkIdType ids[2] = {edge[0], edge[1]};
+    cells->InsertNextCell(2, ids);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(make_points(surface.points));
+  data->SetLines(cells);
+  return data;
+}
+
+void set_color(vtkProperty& property, const QColor& color) {
+  property.SetColor(color.redF(), color.greenF(), color.blueF());
+}
+
+void style_lines(vtkActor& actor, vtkPolyDataMapper& mapper) {
+  mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-1, -8);
+  actor.SetMapper(&mapper);
+  actor.GetProperty()->SetColor(0.10, 0.15, 0.21);
+  actor.GetProperty()->SetLineWidth(1.6F);
+  actor.GetProperty()->LightingOff();
+}
+
+/// Edges between boundary facets of different CAD faces: the features of a mesh without its part.
+vtkSmartPointer<vtkPolyData> feature_data(const SimplexMesh<3>& mesh) {
+  std::vector<std::array<std::int32_t, 3>> sides;  // two nodes, CAD face
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const NodeId a = mesh.facets[f][k];
+      const NodeId b = mesh.facets[f][(k + 1) % 3];
+      sides.push_back(
+          {std::min(a, b), std::max(a, b), f < mesh.facet_face.size() ? mesh.facet_face[f] : 0});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  vtkNew<vtkCellArray> cells;
+  for (std::size_t k = 1; k < sides.size(); ++k) {
+    const auto& a = sides[k - 1];
+    const auto& b = sides[k];
+    if (a[0] != b[0] || a[1] != b[1] || a[2] == b[2]) continue;
+    const vtkIdType ids[2] = {a[0], a[1]};
+    cells->InsertNextCell(2, ids);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(make_points(mesh.points));
+  data->SetLines(cells);
+  return data;
+}
+
+/// Paler and warmer: the inside of a cut body.
+QColor inside_color(const QColor& c) {
+  return {(c.red() + 2 * 255) / 3, (c.green() + 2 * 250) / 3, (c.blue() + 2 * 238) / 3};
+}
+
+/// Values at quantiles, so that a few wild ones do not spoil the scale.
+std::pair<double, double> robust_range(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  if (values.empty()) return {0, 1};
+  const auto at = [&](double q) {
+    const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + k, values.end());
+    return values[static_cast<std::size_t>(k)];
+  };
+  const double low = at(0.01);
+  const double high = at(0.99);
+  if (high - low > 1e-9 * std::abs(high)) return {low, high};
+  return {low - 0.05 * std::abs(low), high + 0.05 * std::abs(high)};
+}
+
+struct PartActors {
+  std::string name;
+  QColor color;
+  vtkSmartPointer<vtkActor> surface;
+  vtkSmartPointer<vtkActor> features;
+};
+
+}  // namespace
+
+struct Scene::Impl {
+  vtkRenderer& renderer;
+  std::vector<PartActors> parts;
+  std::vector<bool> visible;
+  std::shared_ptr<const MeshState> state;
+  std::vector<std::array<NodeId, 3>> outer;  // sorted boundary faces of the mesh, each sorted
+  std::vector<int> part_of_body;
+  vtkSmartPointer<vtkUnstructuredGrid> grid;
+  vtkNew<vtkActor> mesh_actor;
+  vtkNew<vtkPolyDataMapper> mesh_mapper;
+  vtkNew<vtkActor> mesh_lines;  // features, where there is no part to take them from
+  vtkNew<vtkPolyDataMapper> mesh_lines_mapper;
+  vtkNew<vtkPlane> cut_plane;   // for the elements: keeps the negative side
+  vtkNew<vtkPlane> clip_plane;  // for mappers: they keep the positive side
+  std::optional<Section> section;
+  ColorBy color_by = ColorBy::body;
+  int layers_asked = 4;
+  bool edges = true;
+  bool features = true;
+  std::size_t shown = 0;
+  Legend legend;
+  std::array<double, 6> bounds{1, -1, 1, -1, 1, -1};
+
+  explicit Impl(vtkRenderer& r) : renderer(r) {
+    vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
+    mesh_actor->SetMapper(mesh_mapper);
+    vtkProperty* property = mesh_actor->GetProperty();
+    property->SetInterpolationToFlat();
+    property->SetAmbient(0.42);
+    property->SetDiffuse(0.68);
+    property->SetEdgeColor(0.22, 0.28, 0.35);
+    property->SetLineWidth(1);
+    mesh_actor->VisibilityOff();
+    renderer.AddActor(mesh_actor);
+    style_lines(*mesh_lines, *mesh_lines_mapper);
+    renderer.AddActor(mesh_lines);
+    // A key light over the left shoulder gives faces of different slope different shades; the
+    // second one keeps what it leaves in the dark readable.
+    renderer.AutomaticLightCreationOff();
+    for (const auto& [x, y, z, intensity] :
+         {std::array{-0.30, 0.60, 1.0, 0.95}, std::array{0.7, -0.2, 1.0, 0.35}}) {
+      vtkNew<vtkLight> light;
+      light->SetLightTypeToCameraLight();
+      light->SetPosition(x, y, z);
+      light->SetFocalPoint(0, 0, 0);
+      light->SetIntensity(intensity);
+      renderer.AddLight(light);
+    }
+  }
+
+  bool part_visible(int part) const {
+    return part < 0 || part >= static_cast<int>(visible.size()) || visible[part];
+  }
+
+  bool has(ColorBy field) const {
+    if (field == ColorBy::body) return true;
+    if (!state) return false;
+    const SimplexMesh<3>& mesh = state->mesh;
+    switch (field) {
+      case ColorBy::quality:
+        return state->quality.size() == mesh.elements.size();
+      case ColorBy::thickness:
+        return state->thickness.size() == mesh.points.size();
+      case ColorBy::layers:
+        return state->layers.size() == mesh.points.size();
+      case ColorBy::body:
+        break;
+    }
+    return true;
+  }
+
+  QColor color_of_body(int body) const {
+    const int part = part_of_body[static_cast<std::size_t>(body)];
+    if (part >= 0) return parts[static_cast<std::size_t>(part)].color;
+    static const QColor plain(0x7f, 0xa8, 0xd1);
+    return plain;
+  }
+
+  void update_bounds() {
+    Vec<3> low = Vec<3>::Constant(std::numeric_limits<double>::max());
+    Vec<3> high = -low;
+    for (const PartActors& part : parts) {
+      double b[6];
+      part.surface->GetMapper()->GetBounds(b);
+      low = low.cwiseMin(Vec<3>(b[0], b[2], b[4]));
+      high = high.cwiseMax(Vec<3>(b[1], b[3], b[5]));
+    }
+    if (parts.empty() && state) {
+      for (std::size_t k = 1; k < state->mesh.points.size(); ++k) {
+        low = low.cwiseMin(state->mesh.points[k]);
+        high = high.cwiseMax(state->mesh.points[k]);
+      }
+    }
+    bounds = {low[0], high[0], low[1], high[1], low[2], high[2]};
+  }
+
+  void update_visibility() {
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const bool on = part_visible(static_cast<int>(k));
+      parts[k].surface->SetVisibility(on && !state);
+      parts[k].features->SetVisibility(on && features);
+      parts[k].surface->GetProperty()->SetEdgeVisibility(false);
+    }
+    mesh_actor->SetVisibility(state != nullptr);
+    mesh_lines->SetVisibility(state != nullptr && parts.empty() && features);
+    mesh_actor->GetProperty()->SetEdgeVisibility(edges);
+  }
+
+  /// The elements of visible bodies as a grid that remembers their numbers.
+  void build_grid() {
+    grid = nullptr;
+    if (!state) return;
+    const SimplexMesh<3>& mesh = state->mesh;
+    vtkNew<vtkTypeInt64Array> corners;
+    vtkNew<vtkIntArray> element;
+    element->SetName(element_array);
+    std::vector<char> body_visible(mesh.bodies.size());
+    for (std::size_t b = 0; b < mesh.bodies.size(); ++b)
+      body_visible[b] = part_visible(part_of_body[b]);
+    corners->Allocate(static_cast<vtkIdType>(4 * mesh.elements.size()));
+    for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+      if (!mesh.element_body.empty() &&
+          !body_visible[static_cast<std::size_t>(mesh.element_body[e])])
+        continue;
+      for (const NodeId node : mesh.elements[e]) corners->InsertNextValue(node);
+      element->InsertNextValue(static_cast<int>(e));
+    }
+    vtkNew<vtkCellArray> cells;
+    cells->SetData(4, corners);
+    vtkNew<vtkIntArray> node;
+    node->SetName(node_array);
+    node->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points.size()));
+    for (vtkIdType k = 0; k < node->GetNumberOfTuples(); ++k)
+      node->SetValue(k, static_cast<int>(k));
+    grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    grid->SetPoints(make_points(mesh.points));
+    grid->SetCells(VTK_TETRA, cells);
+    grid->GetCellData()->AddArray(element);
+    grid->GetPointData()->AddArray(node);
+  }
+
+  void update_mesh() {
+    shown = 0;
+    if (!grid) {
+      mesh_mapper->RemoveAllInputs();
+      return;
+    }
+    vtkNew<vtkDataSetSurfaceFilter> skin;
+    if (section) {
+      vtkNew<vtkExtractGeometry> cut;
+      cut->SetInputData(grid);
+      cut->SetImplicitFunction(cut_plane);
+      cut->ExtractInsideOn();
+      cut->ExtractBoundaryCellsOn();
+      cut->Update();
+      shown = static_cast<std::size_t>(cut->GetOutput()->GetNumberOfCells());
+      skin->SetInputData(cut->GetOutput());
+    } else {
+      shown = static_cast<std::size_t>(grid->GetNumberOfCells());
+      skin->SetInputData(grid);
+    }
+    skin->Update();
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->ShallowCopy(skin->GetOutput());
+    mesh_mapper->SetInputData(data);
+    color(*data);
+  }
+
+  bool is_outer(std::array<NodeId, 3> face) const {
+    std::sort(face.begin(), face.end());
+    return std::binary_search(outer.begin(), outer.end(), face);
+  }
+
+  void color(vtkPolyData& data) {
+    legend = {};
+    const vtkIdType faces = data.GetNumberOfCells();
+    if (faces == 0) return;
+    auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
+    auto* node = vtkIntArray::SafeDownCast(data.GetPointData()->GetArray(node_array));
+    // The choice is kept for the next mesh that has the field.
+    if (color_by == ColorBy::body || !has(color_by)) {
+      vtkNew<vtkUnsignedCharArray> rgb;
+      rgb->SetNumberOfComponents(3);
+      rgb->SetNumberOfTuples(faces);
+      vtkNew<vtkIdList> corner;
+      for (vtkIdType f = 0; f < faces; ++f) {
+        const int e = element->GetValue(f);
+        QColor c = color_of_body(
+            state->mesh.element_body.empty() ? 0 : state->mesh.element_body[std::size_t(e)]);
+        if (section) {
+          data.GetCellPoints(f, corner);
+          const std::array<NodeId, 3> face{node->GetValue(corner->GetId(0)),
+                                           node->GetValue(corner->GetId(1)),
+                                           node->GetValue(corner->GetId(2))};
+          if (!is_outer(face)) c = inside_color(c);
+        }
+        const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
+                                        static_cast<unsigned char>(c.green()),
+                                        static_cast<unsigned char>(c.blue())};
+        rgb->SetTypedTuple(f, bytes);
+      }
+      data.GetCellData()->SetScalars(rgb);
+      mesh_mapper->SetScalarModeToUseCellData();
+      mesh_mapper->SetColorModeToDirectScalars();
+      mesh_mapper->ScalarVisibilityOn();
+      return;
+    }
+    fill_legend();
+    const bool on_cells = color_by == ColorBy::quality;
+    const std::vector<double>& values = on_cells                      ? state->quality
+                                        : color_by == ColorBy::layers ? state->layers
+                                                                      : state->thickness;
+    vtkNew<vtkFloatArray> scalars;
+    scalars->SetName("value");
+    const vtkIntArray* ids = on_cells ? element : node;
+    const vtkIdType count = on_cells ? faces : data.GetNumberOfPoints();
+    scalars->SetNumberOfTuples(count);
+    for (vtkIdType k = 0; k < count; ++k)
+      scalars->SetValue(k, static_cast<float>(values[std::size_t(ids->GetValue(k))]));
+    vtkNew<vtkLookupTable> table;
+    constexpr int entries = 256;
+    table->SetNumberOfTableValues(entries);
+    for (int k = 0; k < entries; ++k) {
+      const QColor c = legend.map.at((k + 0.5) / entries);
+      table->SetTableValue(k, c.redF(), c.greenF(), c.blueF(), 1);
+    }
+    table->SetNanColor(0.8, 0.82, 0.84, 1);
+    table->SetRange(legend.low, legend.high);
+    mesh_mapper->SetLookupTable(table);
+    mesh_mapper->UseLookupTableScalarRangeOn();
+    mesh_mapper->SetColorModeToMapScalars();
+    mesh_mapper->SetInterpolateScalarsBeforeMapping(!on_cells);
+    mesh_mapper->ScalarVisibilityOn();
+    if (on_cells) {
+      data.GetCellData()->SetScalars(scalars);
+      mesh_mapper->SetScalarModeToUseCellData();
+    } else {
+      data.GetPointData()->SetScalars(scalars);
+      mesh_mapper->SetScalarModeToUsePointData();
+    }
+  }
+
+  void fill_legend() {
+    const auto tr = [](const char* text) { return QCoreApplication::translate("Scene", text); };
+    switch (color_by) {
+      case ColorBy::body:
+        break;
+      case ColorBy::quality:
+        legend = {tr("Quality c(T)"), 0, 1, rating_map()};
+        break;
+      case ColorBy::thickness: {
+        const auto& t = state->thickness;
+        const auto [low, high] = robust_range({t.begin() + 1, t.end()});
+        legend = {tr("Wall thickness, mm"), low, high, sequential_map()};
+        break;
+      }
+      case ColorBy::layers: {
+        // One band a layer, the one of n layers being the first good one.
+        const int n = layers_asked;
+        legend = {tr("Layers through the wall"), 0, 2.0 * n, rating_map()};
+        legend.map.bands = std::min(2 * n, 24);
+        break;
+      }
+    }
+  }
+};
+
+Scene::Scene(vtkRenderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
+Scene::~Scene() = default;
+
+void Scene::set_parts(const std::vector<Part>& parts, const std::vector<QColor>& colors) {
+  for (const PartActors& old : impl_->parts) {
+    impl_->renderer.RemoveActor(old.surface);
+    impl_->renderer.RemoveActor(old.features);
+  }
+  impl_->parts.clear();
+  impl_->visible.assign(parts.size(), true);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    PartActors actors;
+    actors.name = parts[k].name;
+    actors.color = colors[k];
+    vtkNew<vtkPolyDataNormals> normals;
+    normals->SetInputData(surface_data(parts[k].surface));
+    normals->ConsistencyOff();
+    normals->SplittingOn();
+    normals->SetFeatureAngle(32);
+    normals->Update();
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(normals->GetOutput());
+    actors.surface = vtkSmartPointer<vtkActor>::New();
+    actors.surface->SetMapper(mapper);
+    vtkProperty* property = actors.surface->GetProperty();
+    set_color(*property, colors[k]);
+    property->SetAmbient(0.40);
+    property->SetDiffuse(0.70);
+    property->SetSpecular(0.08);
+    property->SetSpecularPower(20);
+    property->SetEdgeColor(0.3, 0.36, 0.42);
+    vtkNew<vtkProperty> back;
+    set_color(*back, inside_color(colors[k]));
+    back->SetAmbient(0.6);
+    back->SetDiffuse(0.4);
+    actors.surface->SetBackfaceProperty(back);
+
+    vtkNew<vtkPolyDataMapper> lines;
+    lines->SetInputData(feature_data(parts[k].surface));
+    actors.features = vtkSmartPointer<vtkActor>::New();
+    style_lines(*actors.features, *lines);
+    impl_->renderer.AddActor(actors.surface);
+    impl_->renderer.AddActor(actors.features);
+    impl_->parts.push_back(std::move(actors));
+  }
+  impl_->update_bounds();
+  set_section(impl_->section);
+  impl_->update_visibility();
+}
+
+void Scene::set_mesh(std::shared_ptr<const MeshState> state) {
+  impl_->state = std::move(state);
+  impl_->outer.clear();
+  impl_->part_of_body.clear();
+  if (impl_->state) {
+    const SimplexMesh<3>& mesh = impl_->state->mesh;
+    for (const std::string& body : mesh.bodies) {
+      const auto part = std::find_if(impl_->parts.begin(), impl_->parts.end(),
+                                     [&](const PartActors& p) { return p.name == body; });
+      impl_->part_of_body.push_back(
+          part == impl_->parts.end() ? -1 : static_cast<int>(part - impl_->parts.begin()));
+    }
+    impl_->outer = mesh.facets;
+    for (auto& facet : impl_->outer) std::sort(facet.begin(), facet.end());
+    std::sort(impl_->outer.begin(), impl_->outer.end());
+    if (impl_->parts.empty()) impl_->mesh_lines_mapper->SetInputData(feature_data(mesh));
+  }
+  impl_->build_grid();
+  impl_->update_bounds();
+  impl_->update_mesh();
+  impl_->update_visibility();
+}
+
+void Scene::set_visible(const std::vector<bool>& visible) {
+  if (visible == impl_->visible) return;
+  impl_->visible = visible;
+  impl_->build_grid();
+  impl_->update_mesh();
+  impl_->update_visibility();
+}
+
+void Scene::set_color_by(ColorBy color_by, int layers_asked) {
+  impl_->color_by = color_by;
+  impl_->layers_asked = layers_asked;
+  impl_->legend = {};
+  auto* data = impl_->grid ? impl_->mesh_mapper->GetInput() : nullptr;
+  if (data) {
+    impl_->color(*data);
+    data->Modified();
+  }
+}
+
+void Scene::set_section(const std::optional<Section>& section) {
+  impl_->section = section;
+  if (section) {
+    Vec<3> origin = section->origin;
+    Vec<3> normal = section->normal;
+    impl_->cut_plane->SetOrigin(origin.data());
+    impl_->cut_plane->SetNormal(normal.data());
+    normal = -normal;
+    impl_->clip_plane->SetOrigin(origin.data());
+    impl_->clip_plane->SetNormal(normal.data());
+  }
+  for (const PartActors& part : impl_->parts) {
+    for (vtkActor* actor : {part.surface.Get(), part.features.Get()}) {
+      actor->GetMapper()->RemoveAllClippingPlanes();
+      if (section) actor->GetMapper()->AddClippingPlane(impl_->clip_plane);
+    }
+  }
+  impl_->mesh_lines_mapper->RemoveAllClippingPlanes();
+  if (section) impl_->mesh_lines_mapper->AddClippingPlane(impl_->clip_plane);
+  impl_->update_mesh();
+}
+
+void Scene::set_edges(bool on) {
+  impl_->edges = on;
+  impl_->update_visibility();
+}
+
+void Scene::set_features(bool on) {
+  impl_->features = on;
+  impl_->update_visibility();
+}
+
+bool Scene::has(ColorBy color_by) const { return impl_->has(color_by); }
+
+Legend Scene::legend() const { return impl_->state ? impl_->legend : Legend{}; }
+
+std::array<double, 6> Scene::bounds() const { return impl_->bounds; }
+
+std::size_t Scene::shown_elements() const { return impl_->shown; }
+
+}  // namespace lamella::ui

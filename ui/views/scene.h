@@ -1,0 +1,55 @@
+#pragma once
+
+#include <QColor>
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/surface.h"
+#include "core/study/run.h"
+#include "ui/views/color_map.h"
+
+class vtkRenderer;
+
+namespace lamella::ui {
+
+/// A plane; what lies on the side its normal points to is cut away. mm.
+struct Section {
+  Vec<3> origin = Vec<3>::Zero();
+  Vec<3> normal = Vec<3>::UnitX();
+};
+
+/// Parts and meshes as pixels of one renderer. Shows the surfaces of the parts, or a mesh once it
+/// is given one. Every number it colors by comes with the MeshState.
+class Scene {
+ public:
+  explicit Scene(vtkRenderer& renderer);
+  ~Scene();
+
+  /// `colors` has one entry a part.
+  void set_parts(const std::vector<Part>& parts, const std::vector<QColor>& colors);
+  /// Null shows the parts. Bodies are matched to parts by name.
+  void set_mesh(std::shared_ptr<const MeshState> state);
+  void set_visible(const std::vector<bool>& visible);
+  /// `layers_asked` centers the scale of ColorBy::layers.
+  void set_color_by(ColorBy color_by, int layers_asked);
+  /// Cuts by whole elements (crinkle cut); the parts are cut smoothly.
+  void set_section(const std::optional<Section>& section);
+  void set_edges(bool on);
+  void set_features(bool on);
+
+  /// False where the mesh carries no such field.
+  bool has(ColorBy color_by) const;
+  Legend legend() const;
+  /// x0 x1 y0 y1 z0 z1 of everything shown or hidden; x0 > x1 when there is nothing.
+  std::array<double, 6> bounds() const;
+  /// Elements left in the picture (cut or whole); 0 while parts are shown.
+  std::size_t shown_elements() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lamella::ui

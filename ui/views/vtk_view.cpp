@@ -1,0 +1,316 @@
+#include "ui/views/vtk_view.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkOpenGLState.h>
+#include <vtkRenderer.h>
+
+#include <QMouseEvent>
+#include <QOpenGLContext>
+#include <QOpenGLExtraFunctions>
+#include <QSurfaceFormat>
+#include <QWheelEvent>
+#include <cmath>
+
+namespace lamella::ui {
+namespace {
+
+/// VTK asks for its context before any OpenGL call. QOpenGLWidget::makeCurrent would rebind Qt's
+/// framebuffer behind VTK's state cache, so the context itself is made current, and only if needed.
+void make_current(vtkObject*, unsigned long, void* client, void*) {
+  auto* context = static_cast<QPointer<QOpenGLContext>*>(client)->data();
+  if (context && QOpenGLContext::currentContext() != context)
+    context->makeCurrent(context->surface());
+}
+
+void is_current(vtkObject*, unsigned long, void* client, void* call_data) {
+  auto* context = static_cast<QPointer<QOpenGLContext>*>(client)->data();
+  *static_cast<bool*>(call_data) = context && QOpenGLContext::currentContext() == context;
+}
+
+}  // namespace
+
+struct VtkView::Vtk {
+  vtkNew<vtkGenericOpenGLRenderWindow> window;
+  vtkNew<vtkRenderer> renderer;
+};
+
+vtkRenderer* VtkView::renderer() const { return vtk_->renderer; }
+
+QSurfaceFormat VtkView::format() {
+  QSurfaceFormat format;
+  format.setRenderableType(QSurfaceFormat::OpenGL);
+  format.setVersion(3, 2);
+  format.setProfile(QSurfaceFormat::CoreProfile);
+  format.setDepthBufferSize(24);
+  format.setStencilBufferSize(8);
+  format.setSamples(0);
+  return format;
+}
+
+bool VtkView::supported() {
+  static const bool works = [] {
+    QOpenGLContext context;
+    context.setFormat(format());
+    return context.create();
+  }();
+  return works;
+}
+
+VtkView::VtkView(QWidget* parent) : QOpenGLWidget(parent), vtk_(std::make_unique<Vtk>()) {
+  setFormat(format());
+  setMouseTracking(true);
+  setFocusPolicy(Qt::StrongFocus);
+  setMinimumSize(200, 150);
+  vtk_->window->SetReadyForRendering(false);
+  vtk_->window->SetFrameBlitModeToNoBlit();
+  vtk_->window->SetMultiSamples(0);
+  vtk_->window->AddRenderer(vtk_->renderer);
+  vtk_->renderer->SetGradientBackground(true);
+  // VTK's gradient runs upward: the lighter color belongs to the top.
+  vtk_->renderer->SetBackground(0.86, 0.892, 0.925);
+  vtk_->renderer->SetBackground2(0.985, 0.988, 0.992);
+  vtk_->renderer->GetActiveCamera()->ParallelProjectionOn();
+  vtkNew<vtkCallbackCommand> make;
+  make->SetCallback(make_current);
+  make->SetClientData(&context_);
+  vtk_->window->AddObserver(vtkCommand::WindowMakeCurrentEvent, make);
+  vtkNew<vtkCallbackCommand> is;
+  is->SetCallback(is_current);
+  is->SetClientData(&context_);
+  vtk_->window->AddObserver(vtkCommand::WindowIsCurrentEvent, is);
+}
+
+VtkView::~VtkView() {
+  // Qt would otherwise report the dying context to a half-destroyed view.
+  if (context_) disconnect(context_, nullptr, this, nullptr);
+  release_gl();
+}
+
+void VtkView::release_gl() {
+  if (!context_) return;
+  makeCurrent();
+  vtk_->window->Finalize();
+  vtk_->window->SetReadyForRendering(false);
+  doneCurrent();
+  context_ = nullptr;
+}
+
+void VtkView::initializeGL() {
+  // Called again with another context when the widget is given to another window.
+  if (context_) disconnect(context_, nullptr, this, nullptr);
+  context_ = context();
+  connect(context_, &QOpenGLContext::aboutToBeDestroyed, this, &VtkView::release_gl);
+  const auto* name = reinterpret_cast<const char*>(context_->functions()->glGetString(GL_RENDERER));
+  const QByteArray device(name ? name : "");
+  const bool software = device.contains("llvmpipe") || device.contains("softpipe");
+  vtk_->window->SetMultiSamples(software ? 0 : 8);
+  vtk_->renderer->SetUseFXAA(software);
+  vtk_->window->SetForceMaximumHardwareLineWidth(1);
+  vtk_->window->SetReadyForRendering(true);
+  vtk_->window->SetOwnContext(0);
+  vtk_->window->SetMapped(1);
+  vtk_->window->SetSupportsOpenGL(1);
+  vtk_->window->SetIsDirect(1);
+  vtk_->window->OpenGLInitContext();
+  vtk_->window->OpenGLInit();
+}
+
+void VtkView::resizeGL(int width, int height) {
+  const double ratio = devicePixelRatioF();
+  vtk_->window->SetSize(static_cast<int>(std::lround(width * ratio)),
+                        static_cast<int>(std::lround(height * ratio)));
+  sized_ = true;
+  if (fit_pending_) fit(pending_fit_);
+}
+
+void VtkView::paintGL() {
+  if (drawing_ || !context_) return;
+  drawing_ = true;
+  vtkOpenGLState* state = vtk_->window->GetState();
+  state->Reset();
+  state->Push();
+  state->vtkglDepthFunc(GL_LEQUAL);
+  vtk_->window->Render();
+  state->Pop();
+
+  QOpenGLExtraFunctions* gl = context_->extraFunctions();
+  gl->glBindFramebuffer(GL_DRAW_FRAMEBUFFER, defaultFramebufferObject());
+  const GLenum target = GL_COLOR_ATTACHMENT0;
+  gl->glDrawBuffers(1, &target);
+  gl->glDisable(GL_SCISSOR_TEST);
+  vtk_->window->BlitDisplayFramebuffer();
+  // The window is opaque: what VTK left in alpha would let the desktop shine through.
+  gl->glBindFramebuffer(GL_FRAMEBUFFER, defaultFramebufferObject());
+  gl->glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+  gl->glClearColor(0, 0, 0, 1);
+  gl->glClear(GL_COLOR_BUFFER_BIT);
+  gl->glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  drawing_ = false;
+  Q_EMIT rendered();
+}
+
+QPointF VtkView::project(const Vec<3>& point) const {
+  const double aspect = height() > 0 ? double(width()) / height() : 1;
+  vtkMatrix4x4* matrix =
+      vtk_->renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(aspect, -1, 1);
+  const double in[4] = {point[0], point[1], point[2], 1};
+  double out[4];
+  matrix->MultiplyPoint(in, out);
+  return {(out[0] / out[3] + 1) / 2 * width(), (1 - out[1] / out[3]) / 2 * height()};
+}
+
+Vec<3> VtkView::unproject(const QPointF& position, const Vec<3>& like) const {
+  const double aspect = height() > 0 ? double(width()) / height() : 1;
+  vtkMatrix4x4* matrix =
+      vtk_->renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(aspect, -1, 1);
+  const double in[4] = {like[0], like[1], like[2], 1};
+  double clip[4];
+  matrix->MultiplyPoint(in, clip);
+  vtkNew<vtkMatrix4x4> inverse;
+  vtkMatrix4x4::Invert(matrix, inverse);
+  const double seen[4] = {(2 * position.x() / width() - 1) * clip[3],
+                          (1 - 2 * position.y() / height()) * clip[3], clip[2], clip[3]};
+  double out[4];
+  inverse->MultiplyPoint(seen, out);
+  return {out[0] / out[3], out[1] / out[3], out[2] / out[3]};
+}
+
+double VtkView::pixel_size() const {
+  vtkCamera* camera = vtk_->renderer->GetActiveCamera();
+  const double view_height =
+      camera->GetParallelProjection()
+          ? 2 * camera->GetParallelScale()
+          : 2 * camera->GetDistance() * std::tan(camera->GetViewAngle() * M_PI / 360);
+  return view_height / std::max(1, height());
+}
+
+void VtkView::look(const Vec<3>& direction, const Vec<3>& up, const std::array<double, 6>& bounds) {
+  vtkCamera* camera = vtk_->renderer->GetActiveCamera();
+  double focal[3];
+  camera->GetFocalPoint(focal);
+  const double distance = camera->GetDistance();
+  camera->SetPosition(focal[0] - direction[0] * distance, focal[1] - direction[1] * distance,
+                      focal[2] - direction[2] * distance);
+  camera->SetViewUp(up[0], up[1], up[2]);
+  fit(bounds);
+}
+
+void VtkView::fit(const std::array<double, 6>& bounds) {
+  if (!sized_) {  // the aspect is not known yet
+    pending_fit_ = bounds;
+    fit_pending_ = true;
+    return;
+  }
+  fit_pending_ = false;
+  if (bounds[0] > bounds[1]) return;
+  vtk_->renderer->ResetCamera(bounds.data());
+  // ResetCamera fits the bounding sphere; the box seen along the axes of the screen is smaller.
+  vtkCamera* camera = vtk_->renderer->GetActiveCamera();
+  if (camera->GetParallelProjection()) {
+    double half_width = 1e-9;
+    double half_height = 1e-9;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec<3> p(bounds[corner & 1], bounds[2 + ((corner >> 1) & 1)],
+                     bounds[4 + ((corner >> 2) & 1)]);
+      const QPointF s = project(p);
+      half_width = std::max(half_width, std::abs(s.x() - width() / 2.0));
+      half_height = std::max(half_height, std::abs(s.y() - height() / 2.0));
+    }
+    const double fill = std::max(half_width / (width() / 2.0), half_height / (height() / 2.0));
+    camera->SetParallelScale(camera->GetParallelScale() * fill * 1.18);
+  }
+  vtk_->renderer->ResetCameraClippingRange();
+  update();
+}
+
+void VtkView::set_perspective(bool on) {
+  vtk_->renderer->GetActiveCamera()->SetParallelProjection(!on);
+  vtk_->renderer->ResetCameraClippingRange();
+  update();
+}
+
+bool VtkView::perspective() const {
+  return !vtk_->renderer->GetActiveCamera()->GetParallelProjection();
+}
+
+void VtkView::rotate(const QPointF& by) {
+  vtkCamera* camera = vtk_->renderer->GetActiveCamera();
+  camera->Azimuth(-by.x() * 0.4);
+  camera->Elevation(by.y() * 0.4);
+  camera->OrthogonalizeViewUp();
+  vtk_->renderer->ResetCameraClippingRange();
+  update();
+}
+
+void VtkView::pan(const QPointF& by) {
+  vtkCamera* camera = vtk_->renderer->GetActiveCamera();
+  Vec<3> focal;
+  Vec<3> position;
+  camera->GetFocalPoint(focal.data());
+  camera->GetPosition(position.data());
+  const Vec<3> shift = unproject(project(focal) - by, focal) - focal;
+  focal += shift;
+  position += shift;
+  camera->SetFocalPoint(focal.data());
+  camera->SetPosition(position.data());
+  vtk_->renderer->ResetCameraClippingRange();
+  update();
+}
+
+void VtkView::zoom(double factor, const QPointF& at) {
+  vtkCamera* camera = vtk_->renderer->GetActiveCamera();
+  Vec<3> focal;
+  camera->GetFocalPoint(focal.data());
+  const Vec<3> before = unproject(at, focal);
+  if (camera->GetParallelProjection()) {
+    camera->SetParallelScale(camera->GetParallelScale() / factor);
+  } else {
+    camera->Dolly(factor);
+  }
+  // Shift so that what is under the cursor stays there.
+  const Vec<3> shift = before - unproject(at, focal);
+  Vec<3> position;
+  camera->GetPosition(position.data());
+  focal += shift;
+  position += shift;
+  camera->SetFocalPoint(focal.data());
+  camera->SetPosition(position.data());
+  vtk_->renderer->ResetCameraClippingRange();
+  update();
+}
+
+void VtkView::mousePressEvent(QMouseEvent* event) {
+  if (filter_ && filter_(event)) return;
+  drag_ = event->button();
+  last_ = event->position();
+}
+
+void VtkView::mouseMoveEvent(QMouseEvent* event) {
+  if (filter_ && filter_(event)) return;
+  if (drag_ == Qt::NoButton) return;
+  const QPointF by = event->position() - last_;
+  last_ = event->position();
+  const bool shift = event->modifiers() & Qt::ShiftModifier;
+  if (drag_ == Qt::MiddleButton || (drag_ == Qt::LeftButton && shift)) {
+    pan(by);
+  } else if (drag_ == Qt::LeftButton) {
+    rotate(by);
+  } else if (drag_ == Qt::RightButton) {
+    zoom(std::exp(-by.y() * 0.01), QPointF(width() / 2.0, height() / 2.0));
+  }
+}
+
+void VtkView::mouseReleaseEvent(QMouseEvent* event) {
+  drag_ = Qt::NoButton;
+  if (filter_) filter_(event);
+}
+
+void VtkView::wheelEvent(QWheelEvent* event) {
+  zoom(std::exp(event->angleDelta().y() * 0.0012), event->position());
+}
+
+}  // namespace lamella::ui

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <QOpenGLWidget>
+#include <QPointF>
+#include <QPointer>
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "core/geometry/simplex.h"
+
+class QOpenGLContext;
+class vtkRenderer;
+
+namespace lamella::ui {
+
+/// A Qt widget that shows one VTK renderer, with the camera under the mouse: left turns, middle or
+/// Shift+left shifts, the wheel and right zoom towards the cursor.
+///
+/// VTK draws into its own framebuffer, which is copied into the widget's; the widget and VTK never
+/// share OpenGL state. All positions are in logical pixels from the top left.
+class VtkView : public QOpenGLWidget {
+  Q_OBJECT
+
+ public:
+  explicit VtkView(QWidget* parent = nullptr);
+  ~VtkView() override;
+
+  /// False where no OpenGL context can be made; then no VtkView may be shown.
+  static bool supported();
+  /// The format every window of the application needs; set it before QApplication is made.
+  static QSurfaceFormat format();
+
+  vtkRenderer* renderer() const;
+
+  /// Where a point of space (mm) is seen.
+  QPointF project(const Vec<3>& point) const;
+  /// The point seen at `position` as deep as `like`.
+  Vec<3> unproject(const QPointF& position, const Vec<3>& like) const;
+  /// mm a pixel, at the depth of the focal point.
+  double pixel_size() const;
+
+  /// Looks along `direction` with `up` upward and fits `bounds` (x0 x1 y0 y1 z0 z1).
+  void look(const Vec<3>& direction, const Vec<3>& up, const std::array<double, 6>& bounds);
+  void fit(const std::array<double, 6>& bounds);
+  void set_perspective(bool on);
+  bool perspective() const;
+
+  /// Sees mouse events before the camera does; returns true to keep one for itself.
+  using MouseFilter = std::function<bool(QMouseEvent*)>;
+  void set_mouse_filter(MouseFilter filter) { filter_ = std::move(filter); }
+
+ Q_SIGNALS:
+  /// A new picture was drawn.
+  void rendered();
+
+ protected:
+  void initializeGL() override;
+  void resizeGL(int width, int height) override;
+  void paintGL() override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+
+ private:
+  void release_gl();
+  void zoom(double factor, const QPointF& at);
+  void rotate(const QPointF& by);
+  void pan(const QPointF& by);
+
+  struct Vtk;
+  std::unique_ptr<Vtk> vtk_;
+  QPointer<QOpenGLContext> context_;
+  std::array<double, 6> pending_fit_{};
+  bool fit_pending_ = false;
+  bool sized_ = false;
+  bool drawing_ = false;
+  MouseFilter filter_;
+  QPointF last_;
+  Qt::MouseButton drag_ = Qt::NoButton;
+};
+
+}  // namespace lamella::ui
