@@ -211,6 +211,29 @@ BoundaryModel<D>::BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurfa
     facet_face_ = surface->facet_face;
     locator_ = std::make_unique<Search>(*surface);
 
+    // A face is planar when all its vertices lie in the plane of its largest facet.
+    std::int32_t patches = 0;
+    for (const Tag& t : tags_) patches = std::max(patches, t.patch + 1);
+    for (std::int32_t f : facet_face_) patches = std::max(patches, f + 1);
+    planes_.resize(patches);
+    plane_tolerance_ = 1e-3 * tolerance;
+    std::vector<double> largest(patches, 0);
+    for (std::size_t f = 0; f < surface->facets.size(); ++f) {
+      std::array<Vec<D>, D> p;
+      for (int k = 0; k < D; ++k) p[k] = surface->points[surface->facets[f][k]];
+      const double size = facet_normal<D>(p).squaredNorm();
+      const std::int32_t patch = facet_face_[f];
+      if (size <= largest[patch]) continue;
+      largest[patch] = size;
+      planes_[patch] = {normals_[f], p[0], true};
+    }
+    for (std::size_t f = 0; f < surface->facets.size(); ++f) {
+      Plane& plane = planes_[facet_face_[f]];
+      for (auto v : surface->facets[f])
+        if (std::abs(plane.normal.dot(surface->points[v] - plane.origin)) > plane_tolerance_)
+          plane.planar = false;
+    }
+
     std::vector<Vec<D>> corners;
     for (auto c : surface->corners) corners.push_back(surface->points[c]);
     std::sort(corners.begin(), corners.end(), lexicographic<D>);

@@ -44,6 +44,13 @@ class BoundaryModel {
   /// Tag of the same group as `t` on the CAD face of reference facet `facet`; `t` when there is
   /// none.
   std::int32_t tag_on(std::int32_t t, std::int32_t facet) const;
+  /// Whether the face of the tag is a plane and x lies in it: a flat change of facets in the plane
+  /// needs no look at the surface.
+  bool in_plane(std::int32_t t, const Vec<D>& x) const {
+    if (planes_.empty()) return true;
+    const Plane& p = planes_[tags_[t].patch];
+    return p.planar && std::abs(p.normal.dot(x - p.origin)) <= plane_tolerance_;
+  }
   /// Whether curved boundaries can be followed; without a surface only flat changes are allowed.
   bool has_surface() const { return locator_ != nullptr; }
 
@@ -57,6 +64,12 @@ class BoundaryModel {
   std::vector<std::uint64_t> hard_pairs_;  // sorted (face, face)
   std::vector<Vec<D>> normals_;
   std::vector<std::int32_t> facet_face_;
+  struct Plane {
+    Vec<D> normal = Vec<D>::Zero(), origin = Vec<D>::Zero();
+    bool planar = false;
+  };
+  std::vector<Plane> planes_;  // [patch]
+  double plane_tolerance_ = 0;
   std::unique_ptr<Search> locator_;
   std::unique_ptr<Features> features_;
 };

@@ -1,5 +1,6 @@
 #include "core/optimize/star_optimizer.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace lamella {
@@ -262,19 +263,56 @@ std::optional<typename StarOptimizer<D>::Apex> StarOptimizer<D>::point_on_bounda
   return apex;
 }
 
+/// Whether a lattice of points on a new facet (quarters of the way between its nodes) lies within
+/// the chord tolerance; the side that the facet shares with the old boundary is left out.
+template <int D>
+bool StarOptimizer<D>::follows_surface(const std::array<Vec<D>, D>& p, const Facet& nodes,
+                                       NodeId replaced) const {
+  constexpr int order = 4;
+  int apex = 0;
+  while (nodes[apex] != replaced) ++apex;
+  const double tol = model_.tolerance();
+  const Vec<D>& a = p[apex];
+  if constexpr (D == 2) {
+    for (int i = 1; i < order; ++i)
+      if (!model_.nearest((i * a + (order - i) * p[1 - apex]) / order, tol)) return false;
+  } else if constexpr (D == 3) {
+    const Vec<D>&b = p[(apex + 1) % 3], &c = p[(apex + 2) % 3];
+    for (int i = 1; i < order; ++i)
+      for (int j = 0; i + j <= order; ++j)
+        if (!model_.nearest((i * a + j * b + (order - i - j) * c) / order, tol)) return false;
+  }
+  return true;
+}
+
 /// The new boundary facets of an apex against the surface: nowhere turned, near the anchor that is
-/// removed, and within the chord tolerance of the original surface. Fills retag_.
+/// removed, and within the chord tolerance of the original surface; so must the feature edges from
+/// the apex to `feature_ends` be. Fills retag_.
 template <int D>
 bool StarOptimizer<D>::boundary_allows(const Apex& apex, const Vec<D>& anchor,
-                                       const Vec<D>* flat_anchor, bool on_feature) {
+                                       const Vec<D>* flat_anchor,
+                                       std::span<const NodeId> feature_ends) {
   const std::size_t count = virtual_faces_.size();
   retag_.resize(count);
-  bool flat = true, one_tag = true;
+  bool flat = true, one_tag = true, planar = true;
   for (std::size_t i = 0; i < count; ++i) {
     retag_[i] = topo_.label[virtual_faces_[i].element];
     one_tag = one_tag && retag_[i] == retag_[0];
   }
   const double tol = model_.tolerance();
+  if (!feature_ends.empty()) {
+    // The removed node must lie on the new feature line; facets alone do not tell, as all those on
+    // one side of the line may vanish.
+    double off2 = std::numeric_limits<double>::infinity();
+    for (NodeId n : feature_ends) {
+      if (n == apex.node) continue;
+      const Vec<D> e = topo_.points[n] - apex.point;
+      const double t = std::clamp((anchor - apex.point).dot(e) / e.squaredNorm(), 0.0, 1.0);
+      off2 = std::min(off2, (anchor - apex.point - t * e).squaredNorm());
+    }
+    if (off2 > tol * tol) return false;
+    if (off2 > flat_ * flat_) flat = false;
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const auto& f = virtual_faces_[i];
     if (apex.node != 0 && f.contains(apex.node)) continue;
@@ -302,8 +340,10 @@ bool StarOptimizer<D>::boundary_allows(const Apex& apex, const Vec<D>& anchor,
       flat_height = std::max(flat_height, std::abs(after.dot(*flat_anchor - apex.point)) / na);
     if (!known || flat_height > flat_) flat = false;
     if (height > tol) return false;
+    for (int k = 0; k < D && planar; ++k) planar = model_.in_plane(retag_[i], q[k]);
   }
-  if (flat && (one_tag || !model_.has_surface())) return true;
+  // Flat facets over a curved face were tested at their own points only: new ones are tested again.
+  if (flat && ((one_tag && planar) || !model_.has_surface())) return true;
   if (!model_.has_surface()) return false;
 
   for (std::size_t i = 0; i < count; ++i) {
@@ -325,29 +365,12 @@ bool StarOptimizer<D>::boundary_allows(const Apex& apex, const Vec<D>& anchor,
       const std::int32_t t = model_.tag_on(retag_[i], at->facet);
       if (!model_.hard(t, retag_[i])) retag_[i] = t;
     }
-    if (flat) continue;
-    if constexpr (D == 3)
-      for (int k = 0; k < D; ++k) {
-        if (nodes[k] == old[f.place]) continue;
-        if (!model_.nearest(0.5 * (apex.point + q[k]), tol)) return false;
-      }
+    if (!(flat && planar) && !follows_surface(q, nodes, old[f.place])) return false;
   }
-  if (on_feature && !flat) {
-    // The feature edges of the new ring: those between facets of hard different tags.
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto& fi = virtual_faces_[i];
-      if (apex.node != 0 && fi.contains(apex.node)) continue;
-      for (NodeId n : fi.nodes) {
-        if (n == 0) continue;
-        for (std::size_t j = 0; j < count; ++j) {
-          if (j == i || !virtual_faces_[j].contains(n)) continue;
-          if (model_.hard(topo_.label[fi.element], topo_.label[virtual_faces_[j].element]) &&
-              !model_.nearest_feature(0.5 * (apex.point + topo_.points[n]), tol))
-            return false;
-        }
-      }
-    }
-  }
+  if (!flat)
+    for (NodeId n : feature_ends)
+      if (n != apex.node && !model_.nearest_feature(0.5 * (apex.point + topo_.points[n]), tol))
+        return false;
   return true;
 }
 
@@ -407,7 +430,7 @@ bool StarOptimizer<D>::process_node(NodeId s) {
     if (!beats(apex)) return;
     if (boundary) {
       if (!topology_allows(apex, s, 0)) return;
-      if (!boundary_allows(apex, old, nullptr, on_feature)) return;
+      if (!boundary_allows(apex, old, nullptr, {along, on_feature ? 2u : 0u})) return;
       best_retag_ = retag_;
     }
     accept_trial(apex);
@@ -486,7 +509,9 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n) {
     if (boundary) {
       if (!topology_allows(apex, s, n)) return;
       const bool split = apex.node == 0;
-      if (!boundary_allows(apex, middle, split ? nullptr : &topo_.points[s], split && on_feature))
+      const NodeId ends[2] = {s, n};
+      if (!boundary_allows(apex, middle, split ? nullptr : &topo_.points[s],
+                           {ends, split && on_feature ? 2u : 0u}))
         return;
       best_retag_ = retag_;
     }

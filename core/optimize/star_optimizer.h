@@ -55,7 +55,8 @@ class StarOptimizer {
   }
   void replace_cavity(const Apex& apex, NodeId moved);
   bool boundary_allows(const Apex& apex, const Vec<D>& anchor, const Vec<D>* flat_anchor,
-                       bool on_feature);
+                       std::span<const NodeId> feature_ends);
+  bool follows_surface(const std::array<Vec<D>, D>& p, const Facet& nodes, NodeId replaced) const;
   bool topology_allows(const Apex& apex, NodeId a, NodeId b) const;
   void collect_ring(NodeId s);
   std::optional<Apex> point_on_boundary(const Vec<D>& x, bool on_feature, double reach) const;
