@@ -54,6 +54,7 @@ struct Script {
   bool run = false;
   int iteration = -1;  ///< picture as soon as this one is there; -1: of the finished run
   bool cut = false;    ///< with the model cut open
+  bool flat = false;   ///< the cut goes through elements
   QString color;       ///< body, quality, thickness or layers
   QString screenshot;  ///< picture of the window
   QString section;     ///< picture of the 3D view, cut open
@@ -102,12 +103,17 @@ int play(ui::MainWindow& window, const Script& script) {
   const QStringList colors{"body", "quality", "thickness", "layers"};
   if (const auto color = colors.indexOf(script.color); color >= 0)
     window.view().set_color_by(ui::ColorBy(color));
-  if (script.cut) window.actions()[ui::Act::section]->setChecked(true);
+  if (script.cut) window.view().look_at_section();
+  if (script.flat) window.actions()[ui::Act::crinkle]->setChecked(false);
   if (!script.screenshot.isEmpty()) {
     wait_until([] { return true; });
     saved = save(window.grab().toImage(), script.screenshot);
   }
   if (!script.section.isEmpty()) {
+    // All the window for the view, and a smooth cut: layers are counted on it.
+    for (const ui::Act act : {ui::Act::show_bodies, ui::Act::show_results, ui::Act::crinkle})
+      window.actions()[act]->setChecked(false);
+    wait_until([] { return true; });
     window.view().look_at_section();
     wait_until([] { return true; });
     saved = save(window.view().picture(), script.section) && saved;
@@ -143,6 +149,7 @@ int main(int argc, char** argv) {
   option("run", "mesh the parts");
   option("iteration", "picture while the run goes on, after this iteration", "K");
   option("cut", "picture with a section");
+  option("flat", "the section cuts through elements");
   option("color", "body, quality, thickness or layers", "FIELD");
   option("screenshot", "picture of the window, then leave", "FILE");
   option("section", "picture of a section, then leave", "FILE");
@@ -152,6 +159,7 @@ int main(int argc, char** argv) {
   script.run = parser.isSet("run");
   if (parser.isSet("iteration")) script.iteration = parser.value("iteration").toInt();
   script.cut = parser.isSet("cut");
+  script.flat = parser.isSet("flat");
   script.color = parser.value("color");
   script.screenshot = parser.value("screenshot");
   script.section = parser.value("section");

@@ -143,6 +143,7 @@ void MainWindow::make_menus() {
                      Act::section_y,
                      Act::section_z,
                      Act::flip,
+                     Act::crinkle,
                      line,
                      Act::edges,
                      Act::features,

@@ -206,6 +206,21 @@ TEST_F(MainWindowTest, SectionCutsTheMeshByWholeElements) {
   EXPECT_EQ(window_.view().scene()->shown_elements(), whole);
 }
 
+TEST_F(MainWindowTest, SectionCutsThroughElementsWhenAsked) {
+  open("box.stl");
+  fake_.step = std::chrono::milliseconds(10);
+  run();
+  // Between two planes of nodes: the plane cuts one slice of 17 x 8 cells, and each of the six
+  // tetrahedra of a cell spans the whole cell in x.
+  window_.view().set_section(Section{{7.9, 0, 0}, Vec<3>::UnitX()});
+  QTest::qWait(50);
+  const std::size_t crinkled = window_.view().scene()->shown_elements();
+  action(Act::crinkle)->setChecked(false);
+  QTest::qWait(50);
+  EXPECT_EQ(window_.view().scene()->shown_elements(), 17u * 8 * 6);
+  EXPECT_LT(window_.view().scene()->shown_elements(), crinkled);
+}
+
 TEST_F(MainWindowTest, SectionPlaneIsDraggedByItsKnob) {
   open("box.stl");
   action(Act::section_x)->trigger();

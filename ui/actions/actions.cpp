@@ -39,6 +39,8 @@ constexpr Row table[] = {
     {Act::section_z, QT_TR_NOOP("Section across Z"), "", "Shift+Z", ""},
     {Act::flip, QT_TR_NOOP("&Flip section"), "flip", "Shift+F",
      QT_TR_NOOP("Show the other side of the section")},
+    {Act::crinkle, QT_TR_NOOP("Cut by &whole elements"), "crinkle", "W",
+     QT_TR_NOOP("Leave whole elements at the section instead of cutting through them"), Check::on},
     {Act::edges, QT_TR_NOOP("Mesh &edges"), "edges", "E",
      QT_TR_NOOP("Show the edges of the elements"), Check::on},
     {Act::features, QT_TR_NOOP("Feature e&dges"), "features", "D",

@@ -23,6 +23,7 @@ enum class Act {
   section_y,
   section_z,
   flip,
+  crinkle,
   edges,
   features,
   fit,

@@ -11,7 +11,7 @@
 namespace lamella::ui {
 namespace {
 
-QPixmap swatch(const QColor& color) {
+QIcon swatch(const QColor& color) {
   QPixmap pixmap(14, 14);
   pixmap.fill(Qt::transparent);
   QPainter painter(&pixmap);
@@ -19,7 +19,10 @@ QPixmap swatch(const QColor& color) {
   painter.setPen(QPen(color.darker(130), 1));
   painter.setBrush(color);
   painter.drawRoundedRect(QRectF(1.5, 1.5, 11, 11), 3, 3);
-  return pixmap;
+  // The same when selected: a style would tint it.
+  QIcon icon(pixmap);
+  icon.addPixmap(pixmap, QIcon::Selected);
+  return icon;
 }
 
 }  // namespace

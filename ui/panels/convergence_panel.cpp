@@ -34,6 +34,8 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   layers_->set_decimals(2);
   conformity_ = new Plot(tr("Conformity (0 is perfect)"));
   conformity_->set_decimals(3);
+  // The first mesh knows nothing of the metric: orders of magnitude lie between it and the rest.
+  conformity_->set_logarithmic(true);
   for (Plot* plot : {nodes_, layers_, conformity_}) {
     plots->addWidget(plot, 1);
     connect(plot, &Plot::clicked, &session, &Session::show_iteration);

@@ -148,6 +148,7 @@ QWidget* ModelView::make_bar() {
   position_->setMinimumWidth(100);
   tools->addWidget(position_);
   tools->addWidget(button(actions_[Act::flip]));
+  tools->addWidget(button(actions_[Act::crinkle]));
   row->addWidget(section_bar_, 1);
   section_bar_->hide();
   row->addStretch(1);
@@ -194,6 +195,11 @@ void ModelView::connect_session() {
 }
 
 void ModelView::connect_actions() {
+  connect(actions_[Act::crinkle], &QAction::toggled, this, [this](bool on) {
+    if (!scene_) return;
+    scene_->set_crinkle(on);
+    refresh();
+  });
   connect(actions_[Act::edges], &QAction::toggled, this, [this](bool on) {
     if (!scene_) return;
     scene_->set_edges(on);
@@ -362,10 +368,10 @@ void ModelView::look_at_section() {
       if (other != axis) depth = std::max(depth, bounds[2 * other + 1] - bounds[2 * other]);
     if (n > 0) {
       bounds[2 * axis + 1] = at;
-      bounds[2 * axis] = std::max(bounds[2 * axis], at - depth / 2);
+      bounds[2 * axis] = std::max(bounds[2 * axis], at - depth * 0.8);
     } else {
       bounds[2 * axis] = at;
-      bounds[2 * axis + 1] = std::min(bounds[2 * axis + 1], at + depth / 2);
+      bounds[2 * axis + 1] = std::min(bounds[2 * axis + 1], at + depth * 0.8);
     }
   }
   const Vec<3> n = section_->normal;

@@ -121,11 +121,16 @@ int Plot::index_at(double x) const {
 std::vector<double> Plot::ticks() const {
   std::vector<double> values;
   if (logarithmic_) {
-    for (int e = static_cast<int>(std::floor(low_)); e <= static_cast<int>(std::ceil(high_)); ++e)
+    const double room = std::max(2.0, area().height() / 20);
+    const int stride = std::max(1, static_cast<int>(std::ceil((high_ - low_) / room)));
+    const bool sparse = (high_ - low_) * 3 > room;
+    for (int e = static_cast<int>(std::floor(low_)); e <= static_cast<int>(std::ceil(high_)); ++e) {
       for (const double lead : {1.0, 2.0, 5.0}) {
+        if (sparse && (lead > 1 || e % stride != 0)) continue;
         const double v = std::log10(lead) + e;
         if (v >= low_ && v <= high_) values.push_back(std::pow(10, v));
       }
+    }
     return values;
   }
   const double step = nice_step(high_ - low_, std::max(3, static_cast<int>(area().height() / 26)));

@@ -3,6 +3,7 @@
 #include <vtkActor.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkCutter.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkExtractGeometry.h>
 #include <vtkFloatArray.h>
@@ -29,6 +30,9 @@ namespace {
 
 constexpr const char* element_array = "element";
 constexpr const char* node_array = "node";
+constexpr const char* thickness_array = "thickness";
+constexpr const char* layers_array = "layers";
+constexpr const char* quality_array = "quality";
 
 vtkSmartPointer<vtkPoints> make_points(const std::vector<Vec<3>>& from) {
   auto points = vtkSmartPointer<vtkPoints>::New();
@@ -138,8 +142,11 @@ struct Scene::Impl {
   std::vector<std::array<NodeId, 3>> outer;  // sorted boundary faces of the mesh, each sorted
   std::vector<int> part_of_body;
   vtkSmartPointer<vtkUnstructuredGrid> grid;
+  vtkSmartPointer<vtkPolyData> skin;  // of the whole grid, made when first needed
   vtkNew<vtkActor> mesh_actor;
   vtkNew<vtkPolyDataMapper> mesh_mapper;
+  vtkNew<vtkActor> cut_actor;  // where the section goes through elements
+  vtkNew<vtkPolyDataMapper> cut_mapper;
   vtkNew<vtkActor> mesh_lines;  // features, where there is no part to take them from
   vtkNew<vtkPolyDataMapper> mesh_lines_mapper;
   vtkNew<vtkPlane> cut_plane;   // for the elements: keeps the negative side
@@ -148,6 +155,7 @@ struct Scene::Impl {
   ColorBy color_by = ColorBy::body;
   int layers_asked = 4;
   bool edges = true;
+  bool crinkle = true;
   bool features = true;
   std::size_t shown = 0;
   Legend legend;
@@ -155,15 +163,18 @@ struct Scene::Impl {
 
   explicit Impl(vtkRenderer& r) : renderer(r) {
     vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
-    mesh_actor->SetMapper(mesh_mapper);
-    vtkProperty* property = mesh_actor->GetProperty();
-    property->SetInterpolationToFlat();
-    property->SetAmbient(0.42);
-    property->SetDiffuse(0.68);
-    property->SetEdgeColor(0.22, 0.28, 0.35);
-    property->SetLineWidth(1);
-    mesh_actor->VisibilityOff();
-    renderer.AddActor(mesh_actor);
+    for (const auto& [actor, mapper] : {std::pair{mesh_actor.Get(), mesh_mapper.Get()},
+                                        std::pair{cut_actor.Get(), cut_mapper.Get()}}) {
+      actor->SetMapper(mapper);
+      vtkProperty* property = actor->GetProperty();
+      property->SetInterpolationToFlat();
+      property->SetAmbient(0.42);
+      property->SetDiffuse(0.68);
+      property->SetEdgeColor(0.22, 0.28, 0.35);
+      property->SetLineWidth(1);
+      actor->VisibilityOff();
+      renderer.AddActor(actor);
+    }
     style_lines(*mesh_lines, *mesh_lines_mapper);
     renderer.AddActor(mesh_lines);
     // A key light over the left shoulder gives faces of different slope different shades; the
@@ -235,7 +246,9 @@ struct Scene::Impl {
     }
     mesh_actor->SetVisibility(state != nullptr);
     mesh_lines->SetVisibility(state != nullptr && parts.empty() && features);
+    cut_actor->SetVisibility(state != nullptr && section && !crinkle);
     mesh_actor->GetProperty()->SetEdgeVisibility(edges);
+    cut_actor->GetProperty()->SetEdgeVisibility(edges);
   }
 
   /// The elements of visible bodies as a grid that remembers their numbers.
@@ -269,16 +282,47 @@ struct Scene::Impl {
     grid->SetCells(VTK_TETRA, cells);
     grid->GetCellData()->AddArray(element);
     grid->GetPointData()->AddArray(node);
+    const auto add = [&](ColorBy field, const std::vector<double>& values, const char* name) {
+      if (!has(field)) return;
+      vtkNew<vtkFloatArray> array;
+      array->SetName(name);
+      array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+      for (std::size_t k = 0; k < values.size(); ++k)
+        array->SetValue(static_cast<vtkIdType>(k), static_cast<float>(values[k]));
+      grid->GetPointData()->AddArray(array);
+    };
+    add(ColorBy::thickness, state->thickness, thickness_array);
+    add(ColorBy::layers, state->layers, layers_array);
+    if (has(ColorBy::quality)) {
+      vtkNew<vtkFloatArray> quality;
+      quality->SetName(quality_array);
+      quality->SetNumberOfTuples(element->GetNumberOfTuples());
+      for (vtkIdType k = 0; k < element->GetNumberOfTuples(); ++k)
+        quality->SetValue(k, static_cast<float>(state->quality[std::size_t(element->GetValue(k))]));
+      grid->GetCellData()->AddArray(quality);
+    }
+    skin = nullptr;
+  }
+
+  static vtkSmartPointer<vtkPolyData> skin_of(vtkUnstructuredGrid* of) {
+    vtkNew<vtkDataSetSurfaceFilter> filter;
+    filter->SetInputData(of);
+    filter->Update();
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->ShallowCopy(filter->GetOutput());
+    return data;
   }
 
   void update_mesh() {
     shown = 0;
+    mesh_mapper->RemoveAllClippingPlanes();
+    cut_mapper->RemoveAllInputs();
+    update_visibility();
     if (!grid) {
       mesh_mapper->RemoveAllInputs();
       return;
     }
-    vtkNew<vtkDataSetSurfaceFilter> skin;
-    if (section) {
+    if (section && crinkle) {
       vtkNew<vtkExtractGeometry> cut;
       cut->SetInputData(grid);
       cut->SetImplicitFunction(cut_plane);
@@ -286,16 +330,33 @@ struct Scene::Impl {
       cut->ExtractBoundaryCellsOn();
       cut->Update();
       shown = static_cast<std::size_t>(cut->GetOutput()->GetNumberOfCells());
-      skin->SetInputData(cut->GetOutput());
+      mesh_mapper->SetInputData(skin_of(cut->GetOutput()));
     } else {
+      if (!skin) skin = skin_of(grid);
+      mesh_mapper->SetInputData(skin);
       shown = static_cast<std::size_t>(grid->GetNumberOfCells());
-      skin->SetInputData(grid);
+      if (section) {
+        mesh_mapper->AddClippingPlane(clip_plane);
+        vtkNew<vtkCutter> cut;
+        cut->SetInputData(grid);
+        cut->SetCutFunction(cut_plane);
+        cut->GenerateTrianglesOff();
+        cut->Update();
+        auto data = vtkSmartPointer<vtkPolyData>::New();
+        data->ShallowCopy(cut->GetOutput());
+        cut_mapper->SetInputData(data);
+        shown = static_cast<std::size_t>(data->GetNumberOfCells());
+      }
     }
-    skin->Update();
-    auto data = vtkSmartPointer<vtkPolyData>::New();
-    data->ShallowCopy(skin->GetOutput());
-    mesh_mapper->SetInputData(data);
-    color(*data);
+    recolor();
+  }
+
+  void recolor() {
+    legend = {};
+    if (!grid) return;
+    if (color_by != ColorBy::body && has(color_by)) fill_legend();
+    color(*mesh_mapper, false);
+    if (cut_mapper->GetNumberOfInputConnections(0) > 0) color(*cut_mapper, true);
   }
 
   bool is_outer(std::array<NodeId, 3> face) const {
@@ -303,52 +364,19 @@ struct Scene::Impl {
     return std::binary_search(outer.begin(), outer.end(), face);
   }
 
-  void color(vtkPolyData& data) {
-    legend = {};
-    const vtkIdType faces = data.GetNumberOfCells();
-    if (faces == 0) return;
-    auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
-    auto* node = vtkIntArray::SafeDownCast(data.GetPointData()->GetArray(node_array));
+  /// `inside`: every face was made by the section.
+  void color(vtkPolyDataMapper& mapper, bool inside) {
+    vtkPolyData& data = *mapper.GetInput();
+    if (data.GetNumberOfCells() == 0) return;
+    mapper.ScalarVisibilityOn();
     // The choice is kept for the next mesh that has the field.
     if (color_by == ColorBy::body || !has(color_by)) {
-      vtkNew<vtkUnsignedCharArray> rgb;
-      rgb->SetNumberOfComponents(3);
-      rgb->SetNumberOfTuples(faces);
-      vtkNew<vtkIdList> corner;
-      for (vtkIdType f = 0; f < faces; ++f) {
-        const int e = element->GetValue(f);
-        QColor c = color_of_body(
-            state->mesh.element_body.empty() ? 0 : state->mesh.element_body[std::size_t(e)]);
-        if (section) {
-          data.GetCellPoints(f, corner);
-          const std::array<NodeId, 3> face{node->GetValue(corner->GetId(0)),
-                                           node->GetValue(corner->GetId(1)),
-                                           node->GetValue(corner->GetId(2))};
-          if (!is_outer(face)) c = inside_color(c);
-        }
-        const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
-                                        static_cast<unsigned char>(c.green()),
-                                        static_cast<unsigned char>(c.blue())};
-        rgb->SetTypedTuple(f, bytes);
-      }
-      data.GetCellData()->SetScalars(rgb);
-      mesh_mapper->SetScalarModeToUseCellData();
-      mesh_mapper->SetColorModeToDirectScalars();
-      mesh_mapper->ScalarVisibilityOn();
+      color_by_body(data, inside);
+      mapper.SetScalarModeToUseCellData();
+      mapper.SetColorModeToDirectScalars();
+      data.Modified();
       return;
     }
-    fill_legend();
-    const bool on_cells = color_by == ColorBy::quality;
-    const std::vector<double>& values = on_cells                      ? state->quality
-                                        : color_by == ColorBy::layers ? state->layers
-                                                                      : state->thickness;
-    vtkNew<vtkFloatArray> scalars;
-    scalars->SetName("value");
-    const vtkIntArray* ids = on_cells ? element : node;
-    const vtkIdType count = on_cells ? faces : data.GetNumberOfPoints();
-    scalars->SetNumberOfTuples(count);
-    for (vtkIdType k = 0; k < count; ++k)
-      scalars->SetValue(k, static_cast<float>(values[std::size_t(ids->GetValue(k))]));
     vtkNew<vtkLookupTable> table;
     constexpr int entries = 256;
     table->SetNumberOfTableValues(entries);
@@ -358,18 +386,49 @@ struct Scene::Impl {
     }
     table->SetNanColor(0.8, 0.82, 0.84, 1);
     table->SetRange(legend.low, legend.high);
-    mesh_mapper->SetLookupTable(table);
-    mesh_mapper->UseLookupTableScalarRangeOn();
-    mesh_mapper->SetColorModeToMapScalars();
-    mesh_mapper->SetInterpolateScalarsBeforeMapping(!on_cells);
-    mesh_mapper->ScalarVisibilityOn();
-    if (on_cells) {
-      data.GetCellData()->SetScalars(scalars);
-      mesh_mapper->SetScalarModeToUseCellData();
+    mapper.SetLookupTable(table);
+    mapper.UseLookupTableScalarRangeOn();
+    mapper.SetColorModeToMapScalars();
+    if (color_by == ColorBy::quality) {
+      data.GetCellData()->SetActiveScalars(quality_array);
+      mapper.SetScalarModeToUseCellData();
+      mapper.InterpolateScalarsBeforeMappingOff();
     } else {
-      data.GetPointData()->SetScalars(scalars);
-      mesh_mapper->SetScalarModeToUsePointData();
+      data.GetPointData()->SetActiveScalars(color_by == ColorBy::layers ? layers_array
+                                                                        : thickness_array);
+      mapper.SetScalarModeToUsePointData();
+      mapper.InterpolateScalarsBeforeMappingOn();
     }
+    data.Modified();
+  }
+
+  void color_by_body(vtkPolyData& data, bool inside) {
+    auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
+    auto* node = vtkIntArray::SafeDownCast(data.GetPointData()->GetArray(node_array));
+    const vtkIdType faces = data.GetNumberOfCells();
+    vtkNew<vtkUnsignedCharArray> rgb;
+    rgb->SetName("body color");
+    rgb->SetNumberOfComponents(3);
+    rgb->SetNumberOfTuples(faces);
+    vtkNew<vtkIdList> corner;
+    for (vtkIdType f = 0; f < faces; ++f) {
+      const int e = element->GetValue(f);
+      QColor c = color_of_body(
+          state->mesh.element_body.empty() ? 0 : state->mesh.element_body[std::size_t(e)]);
+      bool made_by_section = inside;
+      if (section && crinkle && !inside) {
+        data.GetCellPoints(f, corner);
+        made_by_section =
+            !is_outer({node->GetValue(corner->GetId(0)), node->GetValue(corner->GetId(1)),
+                       node->GetValue(corner->GetId(2))});
+      }
+      if (made_by_section) c = inside_color(c);
+      const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
+                                      static_cast<unsigned char>(c.green()),
+                                      static_cast<unsigned char>(c.blue())};
+      rgb->SetTypedTuple(f, bytes);
+    }
+    data.GetCellData()->SetScalars(rgb);
   }
 
   void fill_legend() {
@@ -481,12 +540,7 @@ void Scene::set_visible(const std::vector<bool>& visible) {
 void Scene::set_color_by(ColorBy color_by, int layers_asked) {
   impl_->color_by = color_by;
   impl_->layers_asked = layers_asked;
-  impl_->legend = {};
-  auto* data = impl_->grid ? impl_->mesh_mapper->GetInput() : nullptr;
-  if (data) {
-    impl_->color(*data);
-    data->Modified();
-  }
+  impl_->recolor();
 }
 
 void Scene::set_section(const std::optional<Section>& section) {
@@ -508,6 +562,11 @@ void Scene::set_section(const std::optional<Section>& section) {
   }
   impl_->mesh_lines_mapper->RemoveAllClippingPlanes();
   if (section) impl_->mesh_lines_mapper->AddClippingPlane(impl_->clip_plane);
+  impl_->update_mesh();
+}
+
+void Scene::set_crinkle(bool on) {
+  impl_->crinkle = on;
   impl_->update_mesh();
 }
 

@@ -34,8 +34,10 @@ class Scene {
   void set_visible(const std::vector<bool>& visible);
   /// `layers_asked` centers the scale of ColorBy::layers.
   void set_color_by(ColorBy color_by, int layers_asked);
-  /// Cuts by whole elements (crinkle cut); the parts are cut smoothly.
+  /// Cuts the mesh as `set_crinkle` says, and the parts smoothly.
   void set_section(const std::optional<Section>& section);
+  /// True (the default): the section leaves whole elements; false: it cuts through them.
+  void set_crinkle(bool on);
   void set_edges(bool on);
   void set_features(bool on);
 
@@ -44,7 +46,8 @@ class Scene {
   Legend legend() const;
   /// x0 x1 y0 y1 z0 z1 of everything shown or hidden; x0 > x1 when there is nothing.
   std::array<double, 6> bounds() const;
-  /// Elements left in the picture (cut or whole); 0 while parts are shown.
+  /// Elements in the picture; of a section that cuts through elements, those cut. 0 while parts
+  /// are shown.
   std::size_t shown_elements() const;
 
  private:
