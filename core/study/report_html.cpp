@@ -26,6 +26,7 @@ header span{color:var(--soft)}
 .tile span{color:var(--soft);font-size:12px}
 table{border-collapse:collapse;width:100%}
 th,td{text-align:right;padding:5px 8px;border-bottom:1px solid var(--line);font-variant-numeric:tabular-nums;vertical-align:top}
+td{white-space:nowrap}td.left,.wrap{white-space:normal}
 th{font-size:12px;color:var(--soft);font-weight:600}
 td:first-child,th:first-child,td.left,th.left{text-align:left}
 .plots{display:grid;grid-template-columns:1fr 1fr;gap:8px 28px}
@@ -170,7 +171,7 @@ std::string plots(const Report& r) {
   html += "<figure><figcaption>Element quality c(T), 1 is best</figcaption>" +
           svg_histogram(r.quality, "quality in the metric") + "</figure>";
   html += "<figure><figcaption>Layers through the walls, measured back</figcaption>" +
-          svg_histogram(r.layers, "layers at boundary nodes", asked,
+          svg_histogram(r.layers, "layers at the nodes of thin walls", asked,
                         "asked: " + std::to_string(asked)) +
           "</figure>";
   std::vector<Series> series(3);

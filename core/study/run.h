@@ -43,7 +43,7 @@ struct Outcome {
   std::vector<BodyOutcome> bodies;
   std::vector<IterationRecord> records;    ///< of the whole
   bool cancelled = false;                  ///< stopped early: `state` is the best so far
-  bool converged = false;                  ///< every body reached its layers and settled
+  bool converged = false;                  ///< every body has n layers in the mean and settled
   double seconds = 0;
 };
 

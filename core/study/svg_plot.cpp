@@ -45,7 +45,7 @@ double nice_step(double top, int parts) {
 
 std::string compact(double v) {
   if (v >= 1e6) return short_number(v / 1e6, 3) + "M";
-  if (v >= 1e4) return short_number(v / 1e3, 3) + "k";
+  if (v >= 1e3) return short_number(v / 1e3, 3) + "k";
   return short_number(v, 3);
 }
 

@@ -1,0 +1,114 @@
+#include "core/study/run.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/soup.h"
+#include "core/mesh/sample_meshes.h"
+#include "core/mesh/validate.h"
+#include "core/study/measure.h"
+
+namespace lamella {
+namespace {
+
+/// A plate of 8 x 8 x 1.
+Part plate(const std::string& name) {
+  Part part;
+  part.name = name;
+  part.surface = boundary_surface(box_mesh<3>({2, 2, 1}, Vec<3>::Zero(), Vec<3>(8, 8, 1)), 0);
+  find_features(part.surface, 0.5);
+  part.cad_volume = 64;
+  return part;
+}
+
+class GivesUp : public VolumeMesher {
+ public:
+  std::string name() const override { return "the one that gives up"; }
+  Result<SimplexMesh<3>> generate(const ReferenceSurface<3>&, const Progress&) const override {
+    return Error{Code::failed, "It was too hard.", ""};
+  }
+};
+
+using Meshers = std::vector<std::shared_ptr<const VolumeMesher>>;
+Meshers real() { return {std::shared_ptr<const VolumeMesher>(topological_mesher())}; }
+
+TEST(Run, APlateGetsItsLayersAndKeepsItsVolume) {
+  Study study;
+  study.bodies = {{"plate", 3}};
+  std::vector<int> told;
+  const Result<Outcome> outcome =
+      run(study, {plate("plate")}, real(), {}, [&](const IterationRecord& r, const auto& state) {
+        told.push_back(r.iteration);
+        EXPECT_EQ(state->mesh.element_count(), r.elements);
+      });
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  EXPECT_TRUE(outcome->converged);
+  EXPECT_FALSE(outcome->cancelled);
+  EXPECT_TRUE(validate<3>(outcome->state->mesh).ok());
+  const BodyOutcome& body = outcome->bodies.at(0);
+  EXPECT_NEAR(body.mesh_volume, 64, 1e-9);
+  EXPECT_LE(body.boundary_distance, 1e-9);
+  EXPECT_GE(body.layers.mean, 3);
+  EXPECT_GE(body.layers.p5, 0.8 * 3);
+  EXPECT_EQ(outcome->state->mesh.groups, std::vector<std::string>{"walls"});
+  EXPECT_EQ(told.size(), outcome->records.size());
+  EXPECT_EQ(told.front(), 0);
+}
+
+TEST(Run, TheNextMesherIsAskedAndTheNotesSaySo) {
+  Meshers meshers = real();
+  meshers.insert(meshers.begin(), std::make_shared<GivesUp>());
+  Study study;
+  study.bodies = {{"plate", 1}};
+  study.options.iterations = 1;
+  const Result<Outcome> outcome = run(study, {plate("plate")}, meshers);
+  ASSERT_TRUE(outcome.ok());
+  EXPECT_EQ(outcome->bodies[0].first_mesh_by, meshers[1]->name());
+  EXPECT_NE(outcome->bodies[0].notes.at(0).find("the one that gives up"), std::string::npos);
+  const Result<Outcome> none = run(study, {plate("plate")}, {std::make_shared<GivesUp>()});
+  ASSERT_FALSE(none.ok());
+  EXPECT_EQ(none.error().code, Code::failed);
+}
+
+TEST(Run, TwoBodiesKeepTheirNamesAndWalls) {
+  Study study;
+  study.bodies = {{"a", 1}, {"b", 1}};
+  study.options.iterations = 1;
+  const Result<Outcome> outcome = run(study, {plate("a"), plate("b")}, real());
+  ASSERT_TRUE(outcome.ok());
+  EXPECT_EQ(outcome->state->mesh.bodies, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(outcome->state->mesh.groups, (std::vector<std::string>{"a walls", "b walls"}));
+  EXPECT_EQ(outcome->bodies.size(), 2u);
+}
+
+TEST(Run, CancelGivesTheBestSoFarOrAnErrorBeforeTheFirstMesh) {
+  Study study;
+  study.bodies = {{"plate", 2}};
+  std::stop_source stop;
+  const Result<Outcome> outcome =
+      run(study, {plate("plate")}, real(), Progress({}, stop.get_token()),
+          [&](const IterationRecord& r, const auto&) {
+            if (r.iteration == 1) stop.request_stop();
+          });
+  ASSERT_TRUE(outcome.ok());
+  EXPECT_TRUE(outcome->cancelled);
+  EXPECT_FALSE(outcome->converged);
+  EXPECT_EQ(outcome->records.size(), 2u);
+  EXPECT_TRUE(validate<3>(outcome->state->mesh).ok());
+
+  const Result<Outcome> early =
+      run(study, {plate("plate")}, real(), Progress({}, stop.get_token()));
+  ASSERT_FALSE(early.ok());
+  EXPECT_EQ(early.error().code, Code::cancelled);
+}
+
+TEST(Run, RequestsWithoutSenseAreRefused) {
+  Study study;
+  EXPECT_EQ(run(study, {}, real()).error().code, Code::usage);
+  study.bodies = {{"plate", 0}};
+  EXPECT_EQ(run(study, {plate("plate")}, real()).error().code, Code::usage);
+  study.bodies = {{"plate", 2, 1, 0.5, 0.1}};
+  EXPECT_EQ(run(study, {plate("plate")}, real()).error().code, Code::usage);
+}
+
+}  // namespace
+}  // namespace lamella
