@@ -315,7 +315,7 @@ std::string finding(Joiner& joined) {
 /// Takes the needles out where the surface stays sound; returns how far it may have moved, mm.
 double improve(ReferenceSurface<3>& surface, double chord) {
   ImproveParams params;
-  params.tolerance = 0.1 * chord;
+  params.tolerance = 0.04 * chord;
   params.shortest_edge = 2 * chord;
   ReferenceSurface<3> better = surface;
   improve_triangles(better, params);
@@ -356,7 +356,8 @@ Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadPar
   BRepGProp::VolumeProperties(solid, props);
   part.cad_volume = std::abs(props.Mass());
 
-  const double chord = params.chord_tolerance.value_or(1e-3 * diagonal(solid));
+  const double asked = params.chord_tolerance.value_or(1e-3 * diagonal(solid));
+  const double chord = tessellation_share * asked;
   std::string problem;
   for (const Attempt& attempt : kAttempts) {
     IMeshTools_Parameters mesh;
@@ -389,7 +390,7 @@ Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadPar
 
     part.surface = std::move(joined.surface());
     drop_unused_points(part.surface);
-    const double moved = improve(part.surface, chord);
+    const double moved = improve(part.surface, asked);
     for (const auto& color : info.face_colors) part.surface.faces.push_back({"", color});
     part.chord_error = std::max(mesh.Deflection, joined.deviation()) + moved;
     if (attempt.finer < 1) {

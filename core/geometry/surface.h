@@ -6,6 +6,10 @@
 
 namespace lamella {
 
+/// The chord tolerance that a user asks bounds the distance from the mesh to the exact shape; the
+/// tessellation of the shape spends this share of it, the mesh on the tessellation the rest.
+inline constexpr double tessellation_share = 0.4;
+
 /// One face of the CAD model, or one patch of an STL between feature edges.
 struct SurfaceFace {
   std::string name;                             ///< from the file, else empty

@@ -25,7 +25,8 @@ double seconds_since(Clock::time_point start) {
 
 constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations share the rest
 // Adaption watches a lattice of points of each boundary facet; those between may lie farther off.
-constexpr double kGuardShare = 0.6;
+constexpr double kMaxGuardShare = 0.9;
+constexpr double kMinGuardShare = 0.3;
 constexpr double kSettled = 0.05;  // relative change of the node count
 
 // Where the layers stay behind, the size across the walls is asked smaller, by this factor at most.
@@ -74,7 +75,10 @@ class BodyLoop {
   Result<void> step(const Progress& progress) {
     const auto start = Clock::now();
     AdaptParams params;
-    params.chord_tolerance = kGuardShare * outcome_.chord_tolerance;
+    // What the tessellation has left of the tolerance.
+    params.chord_tolerance = std::clamp(outcome_.chord_tolerance - part_.chord_error,
+                                        kMinGuardShare * outcome_.chord_tolerance,
+                                        kMaxGuardShare * outcome_.chord_tolerance);
     params.seed = options_.seed;
     const double before = boost_;
     boost_ = next_boost();
