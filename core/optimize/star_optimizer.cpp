@@ -21,7 +21,8 @@ StarOptimizer<D>::StarOptimizer(const SimplexMesh<D>& mesh, const MetricField<D>
     : topo_(Topology<D>::from(mesh)),
       model_(mesh, surface, tolerance, params.feature_angle),
       carrier_(params.mean),
-      metric_function_(metric_at) {
+      metric_function_(metric_at),
+      costly_metric_(params.costly_metric) {
   Vec<D> lo = mesh.points[1], hi = lo;
   for (std::size_t n = 1; n < mesh.points.size(); ++n) {
     lo = lo.cwiseMin(mesh.points[n]);
@@ -190,13 +191,14 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
 
 template <int D>
 Packed<D> StarOptimizer<D>::metric_at(const Vec<D>& x, const Packed<D>& carried) const {
-  return metric_function_ ? Packed<D>::from(metric_function_(x)) : carrier_.metric(carried);
+  return metric_function_ && !costly_metric_ ? Packed<D>::from(metric_function_(x))
+                                             : carrier_.metric(carried);
 }
 
 /// Metric at a point of the star of s, interpolated in the element that holds it.
 template <int D>
 Packed<D> StarOptimizer<D>::metric_in_star(NodeId s, const Vec<D>& x) const {
-  if (metric_function_) return Packed<D>::from(metric_function_(x));
+  if (metric_function_ && !costly_metric_) return Packed<D>::from(metric_function_(x));
   double best = -infinity;
   const RealFace<D>* in = nullptr;
   Vec<D> best_weights = Vec<D>::Zero();
@@ -555,7 +557,10 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n) {
 /// Puts the star of the apex in place of the cavity. `moved`: the node that takes the apex' point,
 /// 0 to make a new node where the apex is none.
 template <int D>
-void StarOptimizer<D>::replace_cavity(const Apex& apex, NodeId moved) {
+void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
+  Apex apex = offered;
+  if (apex.node == 0 && metric_function_ && costly_metric_)
+    apex.metric = Packed<D>::from(metric_function_(apex.point));
   if (apex.node == 0 && moved != 0) {
     topo_.points[moved] = apex.point;
     metric_[moved] = apex.metric;

@@ -69,6 +69,7 @@ class StarOptimizer {
   BoundaryModel<D> model_;
   MetricCarrier<D> carrier_;
   MetricFunction<D> metric_function_;
+  bool costly_metric_;
   QualityKernel<D> kernel_;
   double flat_;                      ///< mm, below which a height counts as zero
   std::vector<Packed<D>> metric_;    ///< [node]

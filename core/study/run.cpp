@@ -29,8 +29,7 @@ constexpr double kMaxGuardShare = 0.9;
 constexpr double kMinGuardShare = 0.3;
 constexpr double kSettled = 0.05;  // relative change of the node count
 
-// Where the layers stay behind, the size across the walls is asked smaller, by this factor at most.
-constexpr double kLargestBoost = 1.2;
+constexpr double kGained = 0.02;  // relative rise of the score that is worth another iteration
 
 /// 1 when the mesh has the layers asked: the 5 % quantile and the mean both count. A body without
 /// thin walls has nothing to measure and is content.
@@ -80,14 +79,12 @@ class BodyLoop {
                                         kMinGuardShare * outcome_.chord_tolerance,
                                         kMaxGuardShare * outcome_.chord_tolerance);
     params.seed = options_.seed;
-    const double before = boost_;
-    boost_ = next_boost();
-    MetricField<3> metric = current_.metric;
-    divide_walls(metric, direction_, boost_ / before);
-    // The field at the nodes, not the detector itself: asking it at every new point takes 25 times
-    // as long for a few per cent more layers.
-    Result<Adapted<3>> adapted =
-        adapt<3>(current_.mesh, metric, &part_.surface, params, progress.portion(0, 0.8));
+    // Asked at every accepted point, the detector keeps walls from blurring into their neighbors:
+    // two rounds reach what the nodal field does not in six.
+    params.costly_metric = true;
+    const auto natural = [this](const Vec<3>& x) { return detector_->at(x, natural_).metric; };
+    Result<Adapted<3>> adapted = adapt<3>(current_.mesh, current_.metric, &part_.surface, params,
+                                          progress.portion(0, 0.8), natural);
     if (!adapted) return give_up(adapted.error());
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return give_up(valid.error());
     return accept(std::move(adapted->mesh), start, progress.portion(0.8, 1));
@@ -111,9 +108,6 @@ class BodyLoop {
       outcome_.notes.push_back(
           "At some places the walls have fewer layers than asked: 5 % of their area below " +
           std::to_string(best.layers.p5).substr(0, 4) + ".");
-    if (boost_ > 1)
-      outcome_.notes.push_back("To reach the layers, sizes across the walls were asked up to " +
-                               std::to_string(std::lround(100 * (boost_ - 1))) + " % smaller.");
     if (best_record_ + 1 != outcome_.records.size())
       outcome_.notes.push_back("The mesh of iteration " + std::to_string(best.iteration) +
                                " was kept: later ones had fewer layers.");
@@ -129,7 +123,6 @@ class BodyLoop {
         detector_->field(next.mesh, natural_, progress.portion(0, 0.6));
     if (!field) return field.error();
     next.metric = std::move(field->metric);
-    divide_walls(next.metric, field->direction, boost_);
     next.thickness = std::move(field->thickness);
     Result<IterationRecord> record = measure(next, progress.portion(0.6, 0.8));
     if (!record) return record.error();
@@ -148,36 +141,18 @@ class BodyLoop {
       const bool settled = record->iteration > 1 && change < kSettled;
       const bool enough = record->layers.places == 0 || record->layers.mean >= settings_.layers;
       converged_ = settled && enough;
-      done_ = settled && score >= 1;
+      done_ = settled && (score >= 1 || score < (1 + kGained) * best_score_);
     }
     // Among meshes as good the latest is the most conforming one. The first mesh has no layers to
     // speak of: anything adapted goes before it.
-    if (record->iteration <= 1 || score >= best_score_) {
+    if (record->iteration <= 1 || score >= (1 - kGained) * best_score_) {
       best_ = next;
-      best_score_ = score;
+      best_score_ = std::max(score, record->iteration <= 1 ? 0.0 : best_score_);
       best_record_ = outcome_.records.size();
     }
     current_ = std::move(next);
-    direction_ = std::move(field->direction);
     outcome_.records.push_back(*record);
     return {};
-  }
-
-  /// The size across the walls, h1, divided by `factor`; the other sizes stay.
-  static void divide_walls(MetricField<3>& metric, const std::vector<Vec<3>>& direction,
-                           double factor) {
-    if (factor == 1) return;
-    for (std::size_t v = 1; v < metric.size(); ++v) {
-      const Vec<3>& d = direction[v];
-      metric[v] += (factor * factor - 1) * d.dot(metric[v] * d) * d * d.transpose();
-    }
-  }
-
-  /// What the layers measured last say: the first adaptions are still finding the sizes.
-  double next_boost() const {
-    if (outcome_.records.size() < 3) return boost_;
-    const double score = layers_score(last_record().layers, settings_.layers);
-    return std::min(kLargestBoost, boost_ * std::clamp(1 / score, 1.0, 1.08));
   }
 
   /// An iteration that failed ends the body with what it has; without any adapted mesh it is an
@@ -199,8 +174,6 @@ class BodyLoop {
   NaturalParams natural_;
   std::optional<NaturalDetector> detector_;
   MeshState current_, best_;
-  std::vector<Vec<3>> direction_;  // [node] of current_, across the wall
-  double boost_ = 1;
   double best_score_ = 0;
   std::size_t best_record_ = 0;
   bool done_ = false, converged_ = false;
