@@ -27,7 +27,6 @@ struct AdaptParams {
   int sweeps = 24;             ///< upper bound; the work set empties before
   double relaxation = 3;       ///< weight of the shape in the first sweeps, >= 1; 1: none
   int relaxed_sweeps = 3;      ///< upper bound of the relaxed sweeps
-  bool costly_metric = false;  ///< the metric function is asked for accepted points only
   std::uint64_t seed = 1;
 };
 

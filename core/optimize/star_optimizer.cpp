@@ -21,8 +21,7 @@ StarOptimizer<D>::StarOptimizer(const SimplexMesh<D>& mesh, const MetricField<D>
     : topo_(Topology<D>::from(mesh)),
       model_(mesh, surface, tolerance, params.feature_angle),
       carrier_(params.mean),
-      metric_function_(metric_at),
-      costly_metric_(params.costly_metric) {
+      metric_function_(metric_at) {
   Vec<D> lo = mesh.points[1], hi = lo;
   for (std::size_t n = 1; n < mesh.points.size(); ++n) {
     lo = lo.cwiseMin(mesh.points[n]);
@@ -189,16 +188,9 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
   return true;
 }
 
-template <int D>
-Packed<D> StarOptimizer<D>::metric_at(const Vec<D>& x, const Packed<D>& carried) const {
-  return metric_function_ && !costly_metric_ ? Packed<D>::from(metric_function_(x))
-                                             : carrier_.metric(carried);
-}
-
 /// Metric at a point of the star of s, interpolated in the element that holds it.
 template <int D>
 Packed<D> StarOptimizer<D>::metric_in_star(NodeId s, const Vec<D>& x) const {
-  if (metric_function_ && !costly_metric_) return Packed<D>::from(metric_function_(x));
   double best = -infinity;
   const RealFace<D>* in = nullptr;
   Vec<D> best_weights = Vec<D>::Zero();
@@ -545,7 +537,7 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n) {
   Packed<D> c = Packed<D>::zero();
   c.add(1 - t, carried_[s]);
   c.add(t, carried_[n]);
-  apex.metric = metric_at(apex.point, c);
+  apex.metric = carrier_.metric(c);
   offer(apex);
   if (!found) return false;
   replace_cavity(best_apex_, 0);
@@ -559,7 +551,7 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n) {
 template <int D>
 void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
   Apex apex = offered;
-  if (apex.node == 0 && metric_function_ && costly_metric_)
+  if (apex.node == 0 && metric_function_)
     apex.metric = Packed<D>::from(metric_function_(apex.point));
   if (apex.node == 0 && moved != 0) {
     topo_.points[moved] = apex.point;

@@ -61,7 +61,6 @@ class StarOptimizer {
   void collect_ring(NodeId s);
   std::optional<Apex> point_on_boundary(const Vec<D>& x, bool on_feature, double reach) const;
   Packed<D> metric_in_star(NodeId s, const Vec<D>& x) const;
-  Packed<D> metric_at(const Vec<D>& x, const Packed<D>& carried) const;
   double quality_of(std::int32_t e) const;
   void release_if_unused(NodeId n);
 
@@ -69,7 +68,6 @@ class StarOptimizer {
   BoundaryModel<D> model_;
   MetricCarrier<D> carrier_;
   MetricFunction<D> metric_function_;
-  bool costly_metric_;
   QualityKernel<D> kernel_;
   double flat_;                      ///< mm, below which a height counts as zero
   std::vector<Packed<D>> metric_;    ///< [node]

@@ -81,7 +81,6 @@ class BodyLoop {
     params.seed = options_.seed;
     // Asked at every accepted point, the detector keeps walls from blurring into their neighbors:
     // two rounds reach what the nodal field does not in six.
-    params.costly_metric = true;
     const auto natural = [this](const Vec<3>& x) { return detector_->at(x, natural_).metric; };
     Result<Adapted<3>> adapted = adapt<3>(current_.mesh, current_.metric, &part_.surface, params,
                                           progress.portion(0, 0.8), natural);
