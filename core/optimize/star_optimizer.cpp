@@ -73,7 +73,7 @@ std::size_t StarOptimizer<D>::sweep(const Progress& progress) {
   std::size_t operations = 0;
   const auto last = static_cast<NodeId>(topo_.points.size());
   for (NodeId s = 1; s < last; ++s) {
-    if ((s & 255) == 0) {
+    if ((s & 15) == 0) {
       if (progress.cancelled()) return operations;
       progress.report(static_cast<double>(s) / last);
     }
