@@ -3,10 +3,15 @@
 #include <QApplication>
 #include <QCommandLineParser>
 #include <QEventLoop>
+#include <QPainter>
 #include <QStandardPaths>
 #include <QSurfaceFormat>
 #include <QTimer>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <optional>
+#include <vector>
 
 #include "app/services.h"
 #include "core/base/version.h"
@@ -81,6 +86,67 @@ bool save(const QImage& picture, const QString& file) {
   return false;
 }
 
+/// A place of the cut in a wall as thick as most, nearest to their middle; nothing where the mesh
+/// tells no thickness.
+struct Place {
+  Vec<3> center;
+  double thickness;  ///< mm
+};
+std::optional<Place> typical_wall(const MeshState& state, const ui::Section& section) {
+  if (state.thickness.size() != state.mesh.points.size()) return {};
+  std::vector<Place> places;
+  for (std::size_t n = 1; n < state.mesh.points.size(); ++n) {
+    const Vec<3>& x = state.mesh.points[n];
+    const double off = (x - section.origin).dot(section.normal);
+    if (state.thickness[n] > 0 && std::abs(off) < state.thickness[n] / 2)
+      places.push_back({x - off * section.normal, state.thickness[n]});
+  }
+  if (places.empty()) return {};
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return a.thickness < b.thickness; });
+  const double usual = places[places.size() / 2].thickness;
+  std::erase_if(places, [&](const Place& p) { return std::abs(p.thickness / usual - 1) > 0.1; });
+  Vec<3> middle = Vec<3>::Zero();
+  for (const Place& p : places) middle += p.center / static_cast<double>(places.size());
+  return *std::min_element(places.begin(), places.end(), [&](const Place& a, const Place& b) {
+    return (a.center - middle).squaredNorm() < (b.center - middle).squaredNorm();
+  });
+}
+
+/// The cut as a whole, and beside it a wall from so near that its layers can be counted.
+QImage picture_of_section(ui::MainWindow& window) {
+  ui::ModelView& model = window.view();
+  QImage whole = model.picture();
+  const auto state = window.session().shown_state();
+  const auto section = model.section();
+  if (whole.isNull() || !state || !section) return whole;
+  const std::optional<Place> place = typical_wall(*state, *section);
+  if (!place) return whole;
+
+  const Vec<3> up = std::abs(section->normal[2]) > 0.9 ? Vec<3>::UnitY() : Vec<3>::UnitZ();
+  const Vec<3> lower = place->center.array() - 1.4 * place->thickness;
+  const Vec<3> upper = place->center.array() + 1.4 * place->thickness;
+  const QPointF mark = model.vtk_view()->project(place->center);
+  const QPointF across = model.vtk_view()->project(place->center + place->thickness * up) - mark;
+  model.vtk_view()->look(-section->normal, up,
+                         {lower[0], upper[0], lower[1], upper[1], lower[2], upper[2]});
+  wait_until([] { return true; });
+  const QImage near = model.picture();
+  const int side = near.height();
+  QImage both(whole.width() + side, side, QImage::Format_RGB32);
+  QPainter painter(&both);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.drawImage(0, 0, whole);
+  painter.drawImage(whole.width(), 0, near, (near.width() - side) / 2, 0, side, side);
+  painter.setPen(QPen(QColor(0xd0, 0x60, 0x10), 3));
+  const double radius = 1.6 * std::hypot(across.x(), across.y());
+  painter.scale(whole.devicePixelRatio(), whole.devicePixelRatio());
+  painter.drawEllipse(mark, radius, radius);
+  painter.resetTransform();
+  painter.drawRect(whole.width() + 1, 1, side - 3, side - 3);
+  return both;
+}
+
 int play(ui::MainWindow& window, const Script& script) {
   ui::Session& session = window.session();
   bool failed = false;
@@ -116,7 +182,7 @@ int play(ui::MainWindow& window, const Script& script) {
     wait_until([] { return true; });
     window.view().look_at_section();
     wait_until([] { return true; });
-    saved = save(window.view().picture(), script.section) && saved;
+    saved = save(picture_of_section(window), script.section) && saved;
   }
   session.cancel();
   wait_until(idle);
