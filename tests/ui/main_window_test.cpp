@@ -172,7 +172,7 @@ TEST_F(MainWindowTest, CancelKeepsTheBestMeshAndARunCanFollow) {
 
 TEST_F(MainWindowTest, LookingBackIsNotInterruptedByNewIterations) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(100);
+  fake_.step = std::chrono::milliseconds(400);
   action(Act::run)->trigger();
   ASSERT_TRUE(QTest::qWaitFor([this] { return session().iterations().size() > 2; }, 10000));
   window_.findChild<QSlider*>("iteration_slider")->setValue(0);

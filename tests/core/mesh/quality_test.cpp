@@ -142,7 +142,8 @@ TYPED_TEST(QualityTest, AllocationForecastsTheElementsOfAFinerBox) {
 TYPED_TEST(QualityTest, AspectRatioOfTheBestElementAndOfAThinOne) {
   constexpr int D = TypeParam::value;
   EXPECT_NEAR(aspect_ratio<D>(this->equilateral(3)), 2.0 * D / (D + 1), 1e-12);
-  Corners<D> p{};
+  Corners<D> p;
+  p[0].setZero();
   for (int k = 0; k < D; ++k) p[k + 1] = Vec<D>::Unit(k);
   p[D] *= 0.01;  // the smallest height tends to .01, the longest edge is sqrt 2 (1 in 2D)
   const double longest = D == 2 ? std::hypot(1, 0.01) : std::sqrt(2.0);
