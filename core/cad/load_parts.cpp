@@ -46,7 +46,7 @@ Result<std::vector<Part>> load_step(const std::filesystem::path& file, const Loa
 }
 
 /// Takes the needles out where that leaves the surface sound, and tells of facets that cross.
-void improve(Part& part) {
+void improve(Part& part, const Progress& progress) {
   Vec<3> low = part.surface.points[0];
   Vec<3> high = low;
   for (const Vec<3>& p : part.surface.points) {
@@ -54,7 +54,8 @@ void improve(Part& part) {
     high = high.cwiseMax(p);
   }
   const double size = (high - low).norm();
-  const SelfIntersections before = find_self_intersections(part.surface);
+  const SelfIntersections before = find_self_intersections(part.surface, progress);
+  if (progress.cancelled()) return;
   if (before.pairs > 0) {
     part.notes.push_back(std::to_string(before.pairs) +
                          " pairs of facets cross each other: meshing may fail there.");
@@ -64,12 +65,25 @@ void improve(Part& part) {
   params.tolerance = 1e-5 * size;
   params.shortest_edge = 2e-3 * size;
   ReferenceSurface<3> better = part.surface;
-  improve_triangles(better, params);
-  if (!check_closed(better).ok() || find_self_intersections(better).pairs > 0) return;
+  improve_triangles(better, params, progress);
+  if (!check_closed(better).ok() || find_self_intersections(better, progress).pairs > 0) return;
   // Slivers have no normal: only now do their neighbors show their features.
   find_features(better, SoupParams{}.feature_angle);
   part.surface = std::move(better);
   part.chord_error = params.tolerance;
+}
+
+/// Pairs of facets that cross, in all bodies together.
+std::size_t crossings_of(const std::vector<ReferenceSurface<3>>& bodies, const Progress& progress) {
+  ReferenceSurface<3> all;
+  for (const auto& body : bodies) {
+    const auto first = static_cast<std::int32_t>(all.points.size());
+    all.points.insert(all.points.end(), body.points.begin(), body.points.end());
+    for (const auto& f : body.facets) {
+      all.facets.push_back({f[0] + first, f[1] + first, f[2] + first});
+    }
+  }
+  return find_self_intersections(all, progress).pairs;
 }
 
 Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const LoadParams& params,
@@ -92,6 +106,7 @@ Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const Load
   std::snprintf(unit, sizeof(unit), "An STL has no unit: one file unit was taken as %g mm.",
                 params.unit);
   notes.push_back(unit);
+  const std::size_t crossings = surfaces->size() > 1 ? crossings_of(*surfaces, progress) : 0;
   std::vector<Part> parts;
   for (auto& surface : *surfaces) {
     Part part;
@@ -99,12 +114,17 @@ Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const Load
     if (surfaces->size() > 1) part.name += " " + std::to_string(parts.size() + 1);
     part.cad_volume = enclosed_measure(surface);
     part.surface = std::move(surface);
+    improve(part, progress);
     if (progress.cancelled()) return cancelled_error();
-    improve(part);
     parts.push_back(std::move(part));
   }
   if (parts.size() > 1) {
     notes.push_back("The file holds " + std::to_string(parts.size()) + " separate bodies.");
+    if (crossings > 0) {
+      notes.push_back(
+          "The bodies cross each other in " + std::to_string(crossings) +
+          " pairs of facets: each is meshed alone, so what they share is meshed twice.");
+    }
   }
   parts[0].notes.insert(parts[0].notes.begin(), notes.begin(), notes.end());
   return parts;

@@ -12,6 +12,7 @@
 #include <Geom2d_Curve.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
+#include <ShapeFix_ShapeTolerance.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
@@ -287,7 +288,7 @@ void drop_unused_points(ReferenceSurface<3>& s) {
 }
 
 /// What is wrong with the triangles of a solid; empty when nothing is.
-std::string finding(Joiner& joined) {
+std::string finding(Joiner& joined, const Progress& progress) {
   ReferenceSurface<3>& s = joined.surface();
   if (joined.missing_faces() > 0) {
     return std::to_string(joined.missing_faces()) + " of its faces cannot be triangulated";
@@ -304,7 +305,7 @@ std::string finding(Joiner& joined) {
   for_each_edge(edge_uses(s.facets),
                 [&](std::span<const EdgeUse> uses) { crowded += uses.size() > 2 ? 1 : 0; });
   if (crowded > 0) return "more than two facets meet at " + std::to_string(crowded) + " edges";
-  if (const SelfIntersections x = find_self_intersections(s); x.pairs > 0) {
+  if (const SelfIntersections x = find_self_intersections(s, progress); x.pairs > 0) {
     return "its surface crosses itself at " + std::to_string(x.pairs) +
            " places, the first near (" + short_number(x.place[0]) + ", " +
            short_number(x.place[1]) + ", " + short_number(x.place[2]) + ")";
@@ -313,13 +314,13 @@ std::string finding(Joiner& joined) {
 }
 
 /// Takes the needles out where the surface stays sound; returns how far it may have moved, mm.
-double improve(ReferenceSurface<3>& surface, double chord) {
+double improve(ReferenceSurface<3>& surface, double chord, const Progress& progress) {
   ImproveParams params;
   params.tolerance = 0.04 * chord;
   params.shortest_edge = 2 * chord;
   ReferenceSurface<3> better = surface;
-  improve_triangles(better, params);
-  if (!check_closed(better).ok() || find_self_intersections(better).pairs > 0) return 0;
+  improve_triangles(better, params, progress);
+  if (!check_closed(better).ok() || find_self_intersections(better, progress).pairs > 0) return 0;
   surface = std::move(better);
   return params.tolerance;
 }
@@ -368,12 +369,15 @@ Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadPar
     mesh.AngleInterior = params.angle_tolerance;
     mesh.MinSize = 0.1 * mesh.Deflection;
     mesh.AllowQualityDecrease = Standard_True;
+    // Short edges between vertices of a wide tolerance stay straight however fine the triangles.
+    if (attempt.finer < 1) ShapeFix_ShapeTolerance().LimitTolerance(solid, 0, 1e-3 * chord);
     BRepTools::Clean(solid);
     Handle(OcctProgress) bridge = new OcctProgress(progress.portion(0, 0.9));
     const BRepMesh_IncrementalMesh run(solid, mesh, bridge->Start());
     if (progress.cancelled()) return cancelled_error();
     Joiner joined(solid);
-    std::string here = finding(joined);
+    std::string here = finding(joined, progress);
+    if (progress.cancelled()) return cancelled_error();
     if (here.empty() && joined.deviation() > 1.5 * chord) {
       here = "its triangles lie " + short_number(joined.deviation()) + " mm off the exact surface";
     }
@@ -390,7 +394,8 @@ Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadPar
 
     part.surface = std::move(joined.surface());
     drop_unused_points(part.surface);
-    const double moved = improve(part.surface, asked);
+    const double moved = improve(part.surface, asked, progress);
+    if (progress.cancelled()) return cancelled_error();
     for (const auto& color : info.face_colors) part.surface.faces.push_back({"", color});
     part.chord_error = std::max(mesh.Deflection, joined.deviation()) + moved;
     if (attempt.finer < 1) {

@@ -13,8 +13,8 @@ using Index = std::int32_t;
 
 class Improver {
  public:
-  Improver(ReferenceSurface<3>& surface, const ImproveParams& params)
-      : s_(surface), params_(params) {
+  Improver(ReferenceSurface<3>& surface, const ImproveParams& params, const Progress& progress)
+      : s_(surface), params_(params), progress_(progress) {
     for_each_edge(edge_uses(s_.facets), [&](std::span<const EdgeUse> uses) {
       if (uses.size() == 2) edges_[key(uses[0].a, uses[0].b)] = {uses[0].facet, uses[1].facet};
     });
@@ -27,6 +27,7 @@ class Improver {
 
   void run() {
     constexpr int kRounds = 60;
+    std::size_t step = 0;
     for (int round = 0; round < kRounds; ++round) {
       std::vector<std::pair<double, Index>> needles;
       for (Index f = 0; f < static_cast<Index>(s_.facets.size()); ++f) {
@@ -35,9 +36,10 @@ class Improver {
       std::sort(needles.begin(), needles.end());
       bool changed = false;
       for (const auto& [length, f] : needles) {
+        if (step++ % 1024 == 0 && progress_.cancelled()) break;
         if (aspect(f) > params_.max_aspect) changed = treat(f) || changed;
       }
-      if (!changed) break;
+      if (!changed || progress_.cancelled()) break;
     }
     s_.feature_edges.clear();
     for (const auto& [k, edge] : edges_) {
@@ -249,6 +251,7 @@ class Improver {
 
   ReferenceSurface<3>& s_;
   const ImproveParams& params_;
+  const Progress& progress_;
   std::unordered_map<std::uint64_t, Edge>
       edges_;  // only looked up, and sorted where it is read out
   std::size_t limit_ = 0;
@@ -256,8 +259,9 @@ class Improver {
 
 }  // namespace
 
-void improve_triangles(ReferenceSurface<3>& surface, const ImproveParams& params) {
-  Improver(surface, params).run();
+void improve_triangles(ReferenceSurface<3>& surface, const ImproveParams& params,
+                       const Progress& progress) {
+  Improver(surface, params, progress).run();
 }
 
 }  // namespace lamella

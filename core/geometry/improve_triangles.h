@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "core/base/progress.h"
 #include "core/geometry/surface.h"
 
 namespace lamella {
@@ -15,7 +16,9 @@ struct ImproveParams {
 
 /// Removes needles of a closed surface: flips edges inside a face where the triangles are flat to
 /// `tolerance`, lets slivers below it vanish, and splits longest edges at a point on them, which
-/// moves nothing. Faces, feature edges and corners are kept; the order of work is fixed.
-void improve_triangles(ReferenceSurface<3>& surface, const ImproveParams& params);
+/// moves nothing. Faces, feature edges and corners are kept; the order of work is fixed. Cancel
+/// ends it early with a surface as sound as any.
+void improve_triangles(ReferenceSurface<3>& surface, const ImproveParams& params,
+                       const Progress& progress = {});
 
 }  // namespace lamella

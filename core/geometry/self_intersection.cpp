@@ -131,7 +131,8 @@ class Judge {
 
 }  // namespace
 
-SelfIntersections find_self_intersections(const ReferenceSurface<3>& surface) {
+SelfIntersections find_self_intersections(const ReferenceSurface<3>& surface,
+                                          const Progress& progress) {
   std::vector<Box3> boxes(surface.facets.size());
   for (std::size_t f = 0; f < boxes.size(); ++f) {
     for (const std::int32_t v : surface.facets[f]) {
@@ -143,6 +144,7 @@ SelfIntersections find_self_intersections(const ReferenceSurface<3>& surface) {
   SelfIntersections found;
   std::vector<std::int32_t> stack;
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(boxes.size()); ++f) {
+    if (f % 1024 == 0 && progress.cancelled()) break;
     stack.assign(1, 0);
     while (!stack.empty()) {
       const std::int32_t n = stack.back();

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "core/base/progress.h"
 #include "core/geometry/surface.h"
 
 namespace lamella {
@@ -12,7 +13,9 @@ struct SelfIntersections {
 };
 
 /// Pairs of facets that properly cross, or that fold onto each other at a common edge. Facets that
-/// only touch are not counted.
-SelfIntersections find_self_intersections(const ReferenceSurface<3>& surface);
+/// only touch are not counted. Cancel ends the search: what was found by then comes back, and the
+/// caller asks `progress` before believing it.
+SelfIntersections find_self_intersections(const ReferenceSurface<3>& surface,
+                                          const Progress& progress = {});
 
 }  // namespace lamella

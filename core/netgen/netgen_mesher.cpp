@@ -1,22 +1,18 @@
 #include "core/netgen/netgen_mesher.h"
 
+#include <cstring>
 #include <exception>
-#include <mutex>
-#include <optional>
 #include <ostream>
 #include <sstream>
-#include <stop_token>
+#include <stdexcept>
 
+#include "core/base/child_process.h"
 #include "core/optimize/certificate.h"
 
 namespace nglib {
 #include <nglib.h>
 }
 // Exported by the library, in headers that need its private ones.
-extern "C" {
-void Ng_SetTerminate();
-void Ng_UnSetTerminate();
-}
 namespace netgen {
 extern int printmessage_importance;
 extern std::ostream* mycout;
@@ -25,11 +21,6 @@ extern std::ostream* myerr;
 
 namespace lamella {
 namespace {
-
-std::mutex& library_lock() {
-  static std::mutex lock;
-  return lock;
-}
 
 struct MeshDeleter {
   void operator()(nglib::Ng_Mesh* mesh) const { nglib::Ng_DeleteMesh(mesh); }
@@ -41,134 +32,171 @@ Error failure(const std::string& why) {
           "The surface may cross or touch itself; try a finer or coarser chord tolerance."};
 }
 
-/// Takes what the library prints, and its global settings, for the length of a scope.
-class Console {
- public:
-  Console() {
-    netgen::printmessage_importance = 0;
-    netgen::mycout = netgen::myerr = &text_;
-    Ng_UnSetTerminate();
-  }
-  ~Console() {
-    netgen::printmessage_importance = importance_;
-    netgen::mycout = out_;
-    netgen::myerr = err_;
-    Ng_UnSetTerminate();
-  }
-  Console(const Console&) = delete;
-  Console& operator=(const Console&) = delete;
+/// The last error the library printed, as a sentence; empty if none.
+std::string complaint(const std::string& text) {
+  std::istringstream in(text);
+  std::string last;
+  for (std::string line; std::getline(in, line);)
+    if (const auto at = line.find("ERROR: "); at != std::string::npos) last = line.substr(at + 7);
+  return last.empty() ? last : last + ".";
+}
 
-  /// The last error it printed, as a sentence; empty if none.
-  std::string complaint() const {
-    std::istringstream in(text_.str());
-    std::string last;
-    for (std::string line; std::getline(in, line);)
-      if (const auto at = line.find("ERROR: "); at != std::string::npos) last = line.substr(at + 7);
-    return last.empty() ? last : last + ".";
+template <class T>
+void put(std::string& bytes, const std::vector<T>& values) {
+  const std::uint64_t count = values.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  bytes.append(reinterpret_cast<const char*>(values.data()), count * sizeof(T));
+}
+
+/// Takes from `bytes` at `at` what `put` wrote; false when they end before.
+template <class T>
+bool take(const std::string& bytes, std::size_t& at, std::vector<T>& values) {
+  std::uint64_t count = 0;
+  if (bytes.size() - at < sizeof count) return false;
+  std::memcpy(&count, bytes.data() + at, sizeof count);
+  at += sizeof count;
+  if ((bytes.size() - at) / sizeof(T) < count) return false;
+  values.resize(count);
+  if (count > 0)
+    std::memcpy(static_cast<void*>(values.data()), bytes.data() + at, count * sizeof(T));
+  at += count * sizeof(T);
+  return true;
+}
+
+/// The library numbers the used points of a surface from 1, in their order.
+std::vector<NodeId> nodes_of_library(const ReferenceSurface<3>& surface) {
+  std::vector<char> used(surface.points.size(), 0);
+  for (const auto& f : surface.facets)
+    for (const auto v : f) used[v] = 1;
+  std::vector<NodeId> node(1, 0);  // [library number] node of the mesh
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) node.push_back(static_cast<NodeId>(v) + 1);
+  return node;
+}
+
+using Tetrahedron = std::array<std::int32_t, 4>;  // library numbers, in the library's order
+
+}  // namespace
+
+std::string run_netgen(const ReferenceSurface<3>& surface) {
+  std::ostringstream printed;
+  netgen::printmessage_importance = 0;
+  netgen::mycout = netgen::myerr = &printed;
+  // It drops points without a facet and renumbers: give it the used ones only.
+  const std::vector<NodeId> node = nodes_of_library(surface);
+  std::vector<int> number(surface.points.size(), 0);
+  LibraryMesh library(nglib::Ng_NewMesh());
+  Vec<3> lo = surface.points[node[1] - 1], hi = lo;
+  for (std::size_t i = 1; i < node.size(); ++i) {
+    Vec<3> x = surface.points[node[i] - 1];
+    number[node[i] - 1] = static_cast<int>(i);
+    lo = lo.cwiseMin(x);
+    hi = hi.cwiseMax(x);
+    nglib::Ng_AddPoint(library.get(), x.data());
+  }
+  for (const auto& f : surface.facets) {
+    int t[3] = {number[f[0]], number[f[1]], number[f[2]]};
+    nglib::Ng_AddSurfaceElement(library.get(), nglib::NG_TRIG, t);
   }
 
- private:
-  std::ostringstream text_;
-  int importance_ = netgen::printmessage_importance;
-  std::ostream* out_ = netgen::mycout;
-  std::ostream* err_ = netgen::myerr;
-};
+  nglib::Ng_Meshing_Parameters parameters;
+  parameters.maxh = (hi - lo).norm();
+  parameters.minh = 0;
+  parameters.fineness = 0;
+  parameters.grading = 0.7;  // sizes grow fast away from the surface: the optimizer refines later
+  parameters.optsurfmeshenable = 0;
+  parameters.optvolmeshenable = 1;
+  parameters.optsteps_2d = 0;
+  parameters.optsteps_3d = 1;
+  const auto outcome = nglib::Ng_GenerateVolumeMesh(library.get(), &parameters);
+  const std::string why = complaint(printed.str());
+  const int elements = nglib::Ng_GetNE(library.get());
+  if (outcome != nglib::NG_OK || elements == 0)
+    throw std::runtime_error(why.empty() ? "it gave no tetrahedron." : why);
+
+  std::vector<Vec<3>> inside;
+  const int points = nglib::Ng_GetNP(library.get());
+  for (int i = static_cast<int>(node.size()); i <= points; ++i)
+    nglib::Ng_GetPoint(library.get(), i, inside.emplace_back().data());
+  std::vector<Tetrahedron> tetrahedra;
+  for (int i = 1; i <= elements; ++i) {
+    int v[NG_VOLUME_ELEMENT_MAXPOINTS] = {};
+    nglib::Ng_GetVolumeElement(library.get(), i, v);
+    tetrahedra.push_back({v[0], v[1], v[2], v[3]});
+  }
+  std::string bytes;
+  put(bytes, inside);
+  put(bytes, tetrahedra);
+  return bytes;
+}
+
+namespace {
+
+/// The mesh of the bytes of `run_netgen`, not certified yet.
+Result<SimplexMesh<3>> mesh_of(const std::string& bytes, const ReferenceSurface<3>& surface) {
+  std::vector<Vec<3>> inside;
+  std::vector<Tetrahedron> tetrahedra;
+  std::size_t at = 0;
+  if (!take(bytes, at, inside) || !take(bytes, at, tetrahedra) || at != bytes.size())
+    return failure("its answer is cut off.");
+  SimplexMesh<3> mesh;
+  mesh.points.insert(mesh.points.end(), surface.points.begin(), surface.points.end());
+  std::vector<NodeId> node = nodes_of_library(surface);
+  for (const Vec<3>& x : inside) {
+    node.push_back(static_cast<NodeId>(mesh.points.size()));
+    mesh.points.push_back(x);
+  }
+  mesh.elements.reserve(tetrahedra.size());
+  for (const Tetrahedron& v : tetrahedra) {
+    for (const std::int32_t i : v)
+      if (i < 1 || i >= static_cast<std::int32_t>(node.size()))
+        return failure("its tetrahedra name unknown nodes.");
+    // The library orders the vertices of a tetrahedron the other way round.
+    mesh.elements.push_back({node[v[0]], node[v[2]], node[v[1]], node[v[3]]});
+  }
+  mesh.element_body.assign(mesh.elements.size(), 0);
+  mesh.facets.reserve(surface.facets.size());
+  for (const auto& f : surface.facets) mesh.facets.push_back({f[0] + 1, f[1] + 1, f[2] + 1});
+  mesh.facet_group.assign(mesh.facets.size(), 0);
+  mesh.facet_face = surface.facet_face;
+  return mesh;
+}
 
 class NetgenMesher final : public VolumeMesher {
  public:
+  NetgenMesher(NetgenParams params, NetgenWork work) : params_(params), work_(std::move(work)) {}
+
   std::string name() const override { return "Netgen 6.2"; }
 
   Result<SimplexMesh<3>> generate(const ReferenceSurface<3>& surface,
                                   const Progress& progress) const override {
     if (surface.facets.empty()) return Error{Code::bad_input, "The surface has no triangle.", ""};
-    std::scoped_lock guard(library_lock());
-    if (progress.cancelled()) return cancelled_error();
     progress.report(0);
-    std::optional<SimplexMesh<3>> mesh;
-    std::string why;
-    {
-      Console console;
-      std::stop_callback stop(progress.stop_token(), [] { Ng_SetTerminate(); });
-      try {
-        mesh = fill(surface);
-        why = console.complaint();
-      } catch (const std::exception& e) {
-        why = e.what();
-      } catch (...) {
-        why = "it threw an unknown exception.";
-      }
+    Result<std::string> bytes =
+        run_in_child([&] { return work_(surface); }, params_.time_limit, progress);
+    if (!bytes) {
+      if (bytes.error().code == Code::cancelled) return bytes.error();
+      Error error = failure(bytes.error().message);
+      error.code = bytes.error().code;
+      if (!bytes.error().hint.empty()) error.hint = bytes.error().hint;
+      return error;
     }
-    if (progress.cancelled()) return cancelled_error();
-    if (!mesh) return failure(why);
-    if (mesh->elements.empty()) return failure(why.empty() ? "it gave no tetrahedron." : why);
+    Result<SimplexMesh<3>> mesh = mesh_of(*bytes, surface);
+    if (!mesh) return mesh;
     if (auto valid = certify<3>(*mesh, surface); !valid) return failure(valid.error().message);
     progress.report(1);
-    return std::move(*mesh);
+    return mesh;
   }
 
  private:
-  static SimplexMesh<3> fill(const ReferenceSurface<3>& surface) {
-    // The library drops points without a facet and renumbers: give it the used ones only.
-    const auto n = static_cast<NodeId>(surface.points.size());
-    std::vector<int> number(n, 0);
-    std::vector<NodeId> node(1, 0);  // [library number] our node
-    for (const auto& f : surface.facets)
-      for (const auto v : f) number[v] = 1;
-    LibraryMesh library(nglib::Ng_NewMesh());
-    Vec<3> lo = surface.points[surface.facets[0][0]], hi = lo;
-    for (NodeId v = 0; v < n; ++v) {
-      if (!number[v]) continue;
-      number[v] = static_cast<int>(node.size());
-      node.push_back(v + 1);
-      Vec<3> x = surface.points[v];
-      lo = lo.cwiseMin(x);
-      hi = hi.cwiseMax(x);
-      nglib::Ng_AddPoint(library.get(), x.data());
-    }
-    for (const auto& f : surface.facets) {
-      int t[3] = {number[f[0]], number[f[1]], number[f[2]]};
-      nglib::Ng_AddSurfaceElement(library.get(), nglib::NG_TRIG, t);
-    }
-
-    nglib::Ng_Meshing_Parameters parameters;
-    parameters.maxh = (hi - lo).norm();
-    parameters.minh = 0;
-    parameters.fineness = 0;
-    parameters.grading = 0.7;  // sizes grow fast away from the surface: the optimizer refines later
-    parameters.optsurfmeshenable = 0;
-    parameters.optvolmeshenable = 1;
-    parameters.optsteps_2d = 0;
-    parameters.optsteps_3d = 1;
-    SimplexMesh<3> mesh;
-    if (nglib::Ng_GenerateVolumeMesh(library.get(), &parameters) != nglib::NG_OK) return mesh;
-
-    mesh.points.insert(mesh.points.end(), surface.points.begin(), surface.points.end());
-    const int points = nglib::Ng_GetNP(library.get());
-    for (int i = static_cast<int>(node.size()); i <= points; ++i) {
-      Vec<3> x;
-      nglib::Ng_GetPoint(library.get(), i, x.data());
-      node.push_back(static_cast<NodeId>(mesh.points.size()));
-      mesh.points.push_back(x);
-    }
-    const int elements = nglib::Ng_GetNE(library.get());
-    mesh.elements.reserve(elements);
-    for (int i = 1; i <= elements; ++i) {
-      int v[NG_VOLUME_ELEMENT_MAXPOINTS] = {};
-      nglib::Ng_GetVolumeElement(library.get(), i, v);
-      // The library orders the vertices of a tetrahedron the other way round.
-      mesh.elements.push_back({node[v[0]], node[v[2]], node[v[1]], node[v[3]]});
-    }
-    mesh.element_body.assign(mesh.elements.size(), 0);
-    mesh.facets.reserve(surface.facets.size());
-    for (const auto& f : surface.facets) mesh.facets.push_back({f[0] + 1, f[1] + 1, f[2] + 1});
-    mesh.facet_group.assign(mesh.facets.size(), 0);
-    mesh.facet_face = surface.facet_face;
-    return mesh;
-  }
+  NetgenParams params_;
+  NetgenWork work_;
 };
 
 }  // namespace
 
-std::unique_ptr<VolumeMesher> netgen_mesher() { return std::make_unique<NetgenMesher>(); }
+std::unique_ptr<VolumeMesher> netgen_mesher(const NetgenParams& params, NetgenWork work) {
+  return std::make_unique<NetgenMesher>(params, std::move(work));
+}
 
 }  // namespace lamella

@@ -216,13 +216,14 @@ Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface, const Genera
   if constexpr (D == 3) {
     // The certificate takes the surface for a mesh of the boundary: one that crosses itself would
     // be filled twice where it overlaps, with every volume in order.
-    if (const SelfIntersections x = find_self_intersections(surface); x.pairs > 0) {
+    if (const SelfIntersections x = find_self_intersections(surface, progress); x.pairs > 0) {
       std::ostringstream s;
       s << "The surface crosses itself in " << x.pairs << " pairs of facets, the first near ("
         << x.place[0] << ", " << x.place[1] << ", " << x.place[2] << ").";
       return Error{Code::failed, s.str(), "A finer chord tolerance may set the facets apart."};
     }
   }
+  if (progress.cancelled()) return cancelled_error();
   const Bridged<D> boundary = bridge_shells<D>(surface);
 
   // A portfolio: the order of the nodes decides whether a hard surface stalls. The first start is

@@ -104,12 +104,14 @@ TEST_F(Cli, BadInputsAreStatus3WithOneSentenceAndLeaveNothing) {
   write("garbage.stl", "this is no part at all\n");
   const std::string box = box_stl(10, 10, 1);
   write("truncated.stl", box.substr(0, box.size() / 2));
+  write("open.stl", box.substr(0, box.rfind("facet normal")) + "endsolid box\n");
+  write("nothing.stl", "solid nothing\nendsolid nothing\n");
   write("empty.json", "");
   write("lost.json", R"({"schema": 1, "inputs": ["nowhere.step"]})");
   const Names before = folder.names();
   for (const std::string name :
        {"missing.step", "missing.stl", "empty.step", "empty.stl", "garbage.step", "garbage.stl",
-        "truncated.stl", "empty.json", "lost.json", "missing.json"}) {
+        "truncated.stl", "open.stl", "nothing.stl", "empty.json", "lost.json", "missing.json"}) {
     EXPECT_EQ(run("mesh " + name + " -o out.msh"), 3) << name << ": " << err;
     const std::string named = name == "lost.json" ? "nowhere.step" : name;
     EXPECT_NE(err.find(named), std::string::npos) << err;
@@ -120,6 +122,33 @@ TEST_F(Cli, BadInputsAreStatus3WithOneSentenceAndLeaveNothing) {
     }
   }
   EXPECT_EQ(folder.names(), before);
+}
+
+TEST_F(Cli, FacetsWoundInwardAreTurned) {
+  std::string text = box_stl(10, 10, 1);
+  write("outward.stl", text);
+  const std::string loop = "outer loop\n", end = "endloop";
+  for (std::size_t at = 0; (at = text.find(loop, at)) != text.npos;) {
+    at += loop.size();
+    const std::size_t second = text.find("vertex", at + 1);
+    const std::size_t third = text.find("vertex", second + 1);
+    const std::size_t last = text.find(end, third);
+    const std::string turned = text.substr(third, last - third) +
+                               text.substr(second, third - second) + text.substr(at, second - at);
+    text.replace(at, last - at, turned);
+  }
+  write("inward.stl", text);
+  for (const std::string name : {"outward", "inward"}) {
+    ASSERT_EQ(run("generate --json " + name + ".stl -o " + name + ".mesh"), 0) << err;
+    bool generated = false;
+    for (const json& line : lines()) {
+      if (line["phase"] != "generated") continue;
+      generated = true;
+      EXPECT_NEAR(line["volume"].get<double>(), 100, 1e-6) << name;
+      EXPECT_NEAR(line["cad_volume"].get<double>(), 100, 1e-6) << name;
+    }
+    EXPECT_TRUE(generated) << out;
+  }
 }
 
 TEST_F(Cli, BadMeshesAreStatus3) {

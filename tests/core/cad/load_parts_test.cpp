@@ -92,6 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
                     RealPart{"base_interface_ap214_inch.step", 1, 1.258e6, 30},
                     RealPart{"featuretype_inch.step", 1, 1.9053e5, 96},
                     RealPart{"nist_ctc_03_asme1_ap242-e2.stp", 1, 3.3212e5, 120},
+                    RealPart{"nist_ftc_07_asme1_ap242-e2.stp", 1, 1.7266e6, 304},
                     RealPart{"lego_3xaa_battery_case.step", 5, 35885, 600},
                     RealPart{"jst_xh_s4b_header.step", 1, 278.25, 165},
                     RealPart{"prusa_mini_display_box.stp", 1, 24951, 183},
@@ -203,6 +204,24 @@ TEST(LoadParts, ReadsBodiesOfAnStlInItsUnit) {
   EXPECT_NEAR((*parts)[1].cad_volume, inch3, 1e-9 * inch3);
   ASSERT_FALSE((*parts)[0].notes.empty());
   EXPECT_NE((*parts)[0].notes[0].find("25.4 mm"), std::string::npos);
+}
+
+TEST(LoadParts, TellsOfBodiesThatCrossEachOther) {
+  const test::TemporaryFolder folder;
+  const auto told = [&](const std::string& name, const test::Soup& soup) {
+    const auto file = folder / name;
+    EXPECT_TRUE(write_stl(surface_from_soup(soup).value(), file).ok());
+    const auto parts = load_parts(file, {});
+    EXPECT_TRUE(parts.ok() && parts->size() == 2);
+    bool found = false;
+    for (const std::string& note : (*parts)[0].notes)
+      found = found || note.find("cross each other") != note.npos;
+    return found;
+  };
+  EXPECT_TRUE(told("through.stl",
+                   test::both(test::unit_box(), test::box_soup({-1, .25, .25}, {2, .75, .75}))));
+  EXPECT_FALSE(
+      told("apart.stl", test::both(test::unit_box(), test::box_soup({2, 0, 0}, {3, 1, 1}))));
 }
 
 TEST(LoadParts, CancelReturnsCancelled) {

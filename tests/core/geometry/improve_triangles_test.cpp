@@ -124,5 +124,15 @@ TEST(ImproveTriangles, StopsAtItsLimits) {
   EXPECT_TRUE(check_closed(s).ok());
 }
 
+TEST(ImproveTriangles, StopsSoundWhenCancelled) {
+  const ReferenceSurface<3> before = closed(test::box_soup({0, 0, 0}, {400, 3, 1}));
+  ReferenceSurface<3> s = before;
+  std::stop_source stop;
+  stop.request_stop();
+  improve_triangles(s, {}, Progress({}, stop.get_token()));
+  EXPECT_EQ(s.facets, before.facets);
+  EXPECT_EQ(s.feature_edges, before.feature_edges);
+}
+
 }  // namespace
 }  // namespace lamella

@@ -28,5 +28,15 @@ TEST(SelfIntersection, FindsCrossingAndFoldedFacets) {
   EXPECT_EQ(find_self_intersections(folded).pairs, 1);
 }
 
+TEST(SelfIntersection, StopsWhenCancelled) {
+  const ReferenceSurface<3> s =
+      surface_from_soup(test::both(test::unit_box(), test::box_soup({-1, .2, .3}, {2, .8, .7})))
+          .value();
+  ASSERT_GT(find_self_intersections(s).pairs, 0);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(find_self_intersections(s, Progress({}, stop.get_token())).pairs, 0);
+}
+
 }  // namespace
 }  // namespace lamella

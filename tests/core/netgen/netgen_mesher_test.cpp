@@ -1,8 +1,12 @@
 #include "core/netgen/netgen_mesher.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "core/optimize/certificate.h"
 #include "tests/support/test_surfaces.h"
@@ -76,6 +80,59 @@ TEST(NetgenMesher, StopsWhenCancelled) {
   const auto mesh = netgen_mesher()->generate(test::box(2, 2, 2), Progress({}, stop.get_token()));
   ASSERT_FALSE(mesh.ok());
   EXPECT_EQ(mesh.error().code, Code::cancelled);
+}
+
+TEST(NetgenMesher, SurvivesACrashOfTheLibrary) {
+  const auto crash = [](const ReferenceSurface<3>& surface) -> std::string {
+    if (!surface.facets.empty()) ::raise(SIGSEGV);
+    return "";
+  };
+  const auto mesh = netgen_mesher({}, crash)->generate(test::box(1, 1, 1), {});
+  ASSERT_FALSE(mesh.ok());
+  EXPECT_EQ(mesh.error().code, Code::failed);
+  EXPECT_EQ(mesh.error().message,
+            "Netgen could not mesh the volume: it crashed (Segmentation fault).");
+  EXPECT_FALSE(mesh.error().hint.empty());
+}
+
+TEST(NetgenMesher, RefusesAnAnswerThatMakesNoSense) {
+  const auto good = run_netgen(test::box(1, 1, 1));
+  const auto error_of = [&](const std::string& bytes) {
+    const auto mesh =
+        netgen_mesher({}, [&](const auto&) { return bytes; })->generate(test::box(1, 1, 1), {});
+    return mesh.ok() ? std::string() : mesh.error().message;
+  };
+  EXPECT_EQ(error_of(good), "");
+  EXPECT_NE(error_of(good.substr(0, good.size() - 4)).find("cut off"), std::string::npos);
+  EXPECT_NE(error_of("").find("cut off"), std::string::npos);
+  std::string far = good;
+  far.back() = 0x7f;  // the highest byte of the last node number
+  EXPECT_NE(error_of(far).find("unknown nodes"), std::string::npos);
+}
+
+std::string never_ends(const ReferenceSurface<3>&) {
+  for (;;) ::pause();
+}
+
+TEST(NetgenMesher, GivesUpAtItsTimeLimit) {
+  const auto mesh = netgen_mesher({0.1}, never_ends)->generate(test::box(1, 1, 1), {});
+  ASSERT_FALSE(mesh.ok());
+  EXPECT_EQ(mesh.error().code, Code::failed);
+  EXPECT_NE(mesh.error().message.find("0.1 s"), std::string::npos) << mesh.error().message;
+}
+
+TEST(NetgenMesher, StopsInTheMiddleWhenCancelled) {
+  std::stop_source stop;
+  const std::jthread user([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    stop.request_stop();
+  });
+  const auto start = std::chrono::steady_clock::now();
+  const auto mesh =
+      netgen_mesher({}, never_ends)->generate(test::box(1, 1, 1), Progress({}, stop.get_token()));
+  ASSERT_FALSE(mesh.ok());
+  EXPECT_EQ(mesh.error().code, Code::cancelled);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 }  // namespace

@@ -1,0 +1,133 @@
+#include "core/base/child_process.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+#include <thread>
+
+namespace lamella {
+namespace {
+
+constexpr double kLong = 60;
+
+void expect_no_child_left() {
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
+  EXPECT_EQ(errno, ECHILD);
+}
+
+Error error_of(const std::function<std::string()>& work, double limit = kLong,
+               const Progress& progress = {}) {
+  const auto result = run_in_child(work, limit, progress);
+  expect_no_child_left();
+  EXPECT_FALSE(result.ok());
+  return result.ok() ? Error{} : result.error();
+}
+
+TEST(ChildProcess, HandsBackEveryByte) {
+  std::string bytes(3'000'000, '\0');  // many times what a pipe holds
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7 + i / 251);
+  const auto result = run_in_child([&] { return bytes; }, kLong, {});
+  ASSERT_TRUE(result.ok()) << result.error().message;
+  EXPECT_EQ(*result, bytes);
+  expect_no_child_left();
+  const auto nothing = run_in_child([] { return std::string(); }, kLong, {});
+  ASSERT_TRUE(nothing.ok());
+  EXPECT_EQ(*nothing, "");
+}
+
+TEST(ChildProcess, WorksOnACopy) {
+  int here = 1;
+  const auto result = run_in_child([&] { return std::to_string(++here); }, kLong, {});
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(*result, "2");
+  EXPECT_EQ(here, 1);
+}
+
+TEST(ChildProcess, TurnsACrashIntoASentence) {
+  for (const int signal : {SIGSEGV, SIGFPE, SIGABRT, SIGBUS, SIGILL}) {
+    const Error error = error_of([&]() -> std::string {
+      ::raise(signal);
+      return "not reached";
+    });
+    EXPECT_EQ(error.code, Code::failed);
+    EXPECT_EQ(error.message, std::string("it crashed (") + ::sigdescr_np(signal) + ").");
+  }
+}
+
+TEST(ChildProcess, TurnsAnExitIntoASentence) {
+  const Error error = error_of([]() -> std::string { ::_exit(7); });
+  EXPECT_EQ(error.code, Code::failed);
+  EXPECT_EQ(error.message, "it ended early (exit code 7).");
+  EXPECT_EQ(error_of([]() -> std::string { ::_exit(0); }).code, Code::failed);
+}
+
+TEST(ChildProcess, TurnsExceptionsIntoSentences) {
+  const Error error = error_of([]() -> std::string { throw std::runtime_error("no luck"); });
+  EXPECT_EQ(error.code, Code::failed);
+  EXPECT_EQ(error.message, "no luck");
+  EXPECT_EQ(error_of([]() -> std::string { throw 5; }).code, Code::failed);
+  EXPECT_EQ(error_of([]() -> std::string { throw std::bad_alloc(); }).code, Code::memory);
+}
+
+TEST(ChildProcess, NamesMemoryWhenTheSystemKillsIt) {
+  const Error error = error_of([]() -> std::string {
+    ::raise(SIGKILL);
+    return "";
+  });
+  EXPECT_EQ(error.code, Code::memory);
+}
+
+TEST(ChildProcess, EndsWhatTakesTooLong) {
+  const auto start = std::chrono::steady_clock::now();
+  const Error error = error_of(
+      []() -> std::string {
+        for (;;) ::pause();
+      },
+      0.2);
+  EXPECT_EQ(error.code, Code::failed);
+  EXPECT_EQ(error.message, "it found no end within 0.2 s.");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
+TEST(ChildProcess, KillsOnCancel) {
+  std::stop_source stop;
+  const auto start = std::chrono::steady_clock::now();
+  const std::jthread user([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    stop.request_stop();
+  });
+  const Error error = error_of(
+      []() -> std::string {
+        for (;;) ::pause();
+      },
+      kLong, Progress({}, stop.get_token()));
+  EXPECT_EQ(error.code, Code::cancelled);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
+TEST(ChildProcess, LosesWhatIsPrinted) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const auto result = run_in_child(
+      [] {
+        std::printf("noise");
+        std::fprintf(stderr, "noise");
+        std::fflush(nullptr);
+        return std::string("done");
+      },
+      kLong, {});
+  EXPECT_TRUE(result.ok());
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace lamella
