@@ -48,6 +48,6 @@ if(NGLIB_LIBRARY)
   get_filename_component(NGLIB_FOLDER ${NGLIB_LIBRARY} DIRECTORY)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${NGLIB_FOLDER})
 endif()
-# Loaded at run time, so no tool finds it: the plugin that draws SVG icons.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS libqt6svg6)
+# What is linked is found by dpkg-shlibdeps; the window falls back to another font without this one.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS fonts-inter)
 include(CPack)
