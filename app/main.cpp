@@ -13,9 +13,8 @@
 #include <optional>
 #include <vector>
 
-#include "app/services.h"
+#include "app/window_services.h"
 #include "core/base/version.h"
-#include "core/cad/sample_parts.h"
 #include "ui/actions/actions.h"
 #include "ui/main_window.h"
 #include "ui/session/session.h"
@@ -26,40 +25,13 @@
 namespace lamella {
 namespace {
 
-ui::Services make_services() {
-  ui::Services services;
-  services.load_parts = [](const std::filesystem::path& file, const LoadParams& params,
-                           const Progress& progress) { return load_parts(file, params, progress); };
-  services.meshers = [] { return meshers_for(MesherChoice::automatic); };
-  services.run = run;
-  services.export_mesh = [](const std::filesystem::path& file, const MeshState& state,
-                            const Study& study) -> Result<void> {
-    std::vector<InputFile> inputs;
-    for (const std::string& input : study.inputs)
-      if (Result<InputFile> described = describe_input(input); described)
-        inputs.push_back(*described);
-    const Result<ExportCertificate> written = export_mesh(file, state, study, inputs);
-    return written ? Result<void>() : Result<void>(written.error());
-  };
-  services.sample_part = [](const std::string& name) -> Result<std::filesystem::path> {
-    const std::filesystem::path folder =
-        QStandardPaths::writableLocation(QStandardPaths::CacheLocation).toStdString() + "/samples";
-    std::error_code ec;
-    std::filesystem::create_directories(folder, ec);
-    const std::filesystem::path file = folder / (name + ".step");
-    if (const Result<void> written = write_sample(name, file); !written) return written.error();
-    return file;
-  };
-  services.read_mesh = [](const std::filesystem::path& file) { return read_mesh(file); };
-  return services;
-}
-
 /// What to do without a user: make pictures and leave.
 struct Script {
   bool run = false;
   int iteration = -1;  ///< picture as soon as this one is there; -1: of the finished run
   bool cut = false;    ///< with the model cut open
   bool flat = false;   ///< the cut goes through elements
+  QString near;        ///< "x,y,z,r": brings what is within r mm of a point close
   QString color;       ///< body, quality, thickness or layers
   QString screenshot;  ///< picture of the window
   QString section;     ///< picture of the 3D view, cut open
@@ -171,6 +143,9 @@ int play(ui::MainWindow& window, const Script& script) {
     window.view().set_color_by(ui::ColorBy(color));
   if (script.cut) window.view().look_at_section();
   if (script.flat) window.actions()[ui::Act::crinkle]->setChecked(false);
+  if (const QStringList at = script.near.split(','); at.size() == 4)
+    window.view().look_near(Vec<3>(at[0].toDouble(), at[1].toDouble(), at[2].toDouble()),
+                            at[3].toDouble());
   if (!script.screenshot.isEmpty()) {
     wait_until([] { return true; });
     saved = save(window.grab().toImage(), script.screenshot);
@@ -216,6 +191,7 @@ int main(int argc, char** argv) {
   option("iteration", "picture while the run goes on, after this iteration", "K");
   option("cut", "picture with a section");
   option("flat", "the section cuts through elements");
+  option("near", "brings what is within R of a point close", "X,Y,Z,R");
   option("color", "body, quality, thickness or layers", "FIELD");
   option("screenshot", "picture of the window, then leave", "FILE");
   option("section", "picture of a section, then leave", "FILE");
@@ -226,12 +202,14 @@ int main(int argc, char** argv) {
   if (parser.isSet("iteration")) script.iteration = parser.value("iteration").toInt();
   script.cut = parser.isSet("cut");
   script.flat = parser.isSet("flat");
+  script.near = parser.value("near");
   script.color = parser.value("color");
   script.screenshot = parser.value("screenshot");
   script.section = parser.value("section");
 
   ui::apply_theme(application);
-  ui::MainWindow window(make_services());
+  ui::MainWindow window(window_services(
+      QStandardPaths::writableLocation(QStandardPaths::CacheLocation).toStdString() + "/samples"));
   window.show();
   window.open_files(parser.positionalArguments());
   return script.any() ? play(window, script) : QApplication::exec();

@@ -80,19 +80,16 @@ void MainWindow::make_body() {
   banner_ = new Banner;
   layout->addWidget(banner_);
 
-  rows_ = new QSplitter(Qt::Vertical);
+  // The bodies and their settings need the height, the plots the width that is left.
   columns_ = new QSplitter(Qt::Horizontal);
+  rows_ = new QSplitter(Qt::Vertical);
   bodies_ = new BodiesPanel(*session_, *actions_);
-  bodies_->setMinimumWidth(270);
+  bodies_->setMinimumWidth(300);
   stack_ = new QStackedWidget;
   welcome_ = new Welcome(*actions_);
   view_ = new ModelView(*session_, *actions_);
   stack_->addWidget(welcome_);
   stack_->addWidget(view_);
-  columns_->addWidget(bodies_);
-  columns_->addWidget(stack_);
-  columns_->setStretchFactor(1, 1);
-  columns_->setSizes({310, 1100});
 
   auto* panel = new QFrame;
   panel->setObjectName("panel");
@@ -105,15 +102,19 @@ void MainWindow::make_body() {
   auto* log = new LogPanel;
   results_->addTab(log, tr("Log"));
   inner->addWidget(results_);
-  rows_->addWidget(columns_);
+  rows_->addWidget(stack_);
   rows_->addWidget(panel);
   rows_->setStretchFactor(0, 1);
-  rows_->setSizes({560, 250});
+  rows_->setSizes({570, 230});
+  columns_->addWidget(bodies_);
+  columns_->addWidget(rows_);
+  columns_->setStretchFactor(1, 1);
+  columns_->setSizes({336, 1100});
   for (QSplitter* splitter : {rows_, columns_}) {
     splitter->setHandleWidth(8);
     splitter->setChildrenCollapsible(false);
   }
-  layout->addWidget(rows_, 1);
+  layout->addWidget(columns_, 1);
   setCentralWidget(central);
   connect(session_, &Session::logged, log, &LogPanel::add);
   connect(welcome_, &Welcome::sample_chosen, this, [this](const QString& name) {
@@ -349,6 +350,14 @@ void MainWindow::show_progress(double fraction, const QString& phase, double sec
   if (session_->cancelling()) return;
   QString text = phase.isEmpty() ? state_->text() : phase;
   if (session_->activity() == Activity::running) {
+    // The first mesh is iteration 0: as many are there as the one under way has before it.
+    if (const auto done = session_->iterations().size(); done > 0)
+      text = tr("Iteration %1 of at most %2%3")
+                 .arg(std::min<int>(static_cast<int>(done), session_->study().options.iterations))
+                 .arg(session_->study().options.iterations)
+                 .arg(phase.isEmpty() || phase.startsWith("iteration") ? QString() : ":  " + phase);
+    else if (!text.isEmpty())
+      text[0] = text[0].toUpper();
     text += tr("   %1 %").arg(static_cast<int>(fraction * 100));
     if (seconds_left >= 0) text += tr("   %1 left").arg(duration(seconds_left));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -21,8 +22,8 @@ struct Services {
   std::function<Result<std::vector<Part>>(const std::filesystem::path&, const LoadParams&,
                                           const Progress&)>
       load_parts;
-  /// The first-mesh makers, in the order to try.
-  std::function<std::vector<std::shared_ptr<const VolumeMesher>>()> meshers;
+  /// The first-mesh makers for a seed, in the order to try.
+  std::function<std::vector<std::shared_ptr<const VolumeMesher>>(std::uint64_t)> meshers;
   /// The main loop, see core/study/run.h.
   std::function<Result<Outcome>(const Study&, const std::vector<Part>&,
                                 const std::vector<std::shared_ptr<const VolumeMesher>>&, Progress,

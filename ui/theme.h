@@ -20,6 +20,7 @@ inline const QColor accent{0x1d, 0x6f, 0xc4};
 inline const QColor good{0x2f, 0x85, 0x5a};
 inline const QColor warning{0xc0, 0x7a, 0x0b};
 inline const QColor danger{0xc5, 0x3a, 0x30};
+inline const QColor missing{0xc4, 0xc9, 0xcf};  ///< where a field has no value
 }  // namespace theme
 
 /// Style, palette, font and style sheet of the application.

@@ -53,7 +53,9 @@ struct FakeServices {
                              const Progress& progress) {
       return load_parts(file, params, progress);
     };
-    services.meshers = [] { return std::vector<std::shared_ptr<const VolumeMesher>>{}; };
+    services.meshers = [](std::uint64_t) {
+      return std::vector<std::shared_ptr<const VolumeMesher>>{};
+    };
     services.run = [this](const Study& study, const std::vector<Part>& parts, const auto&,
                           const Progress& progress, const IterationSink& sink) -> Result<Outcome> {
       Outcome outcome;

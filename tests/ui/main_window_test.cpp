@@ -12,11 +12,13 @@
 #include <QTreeView>
 #include <fstream>
 
+#include "core/cad/sample_parts.h"
 #include "tests/support/fake_services.h"
 #include "tests/support/temporary_folder.h"
 #include "ui/actions/actions.h"
 #include "ui/models/body_model.h"
 #include "ui/panels/banner.h"
+#include "ui/panels/length_box.h"
 #include "ui/session/session.h"
 #include "ui/views/model_view.h"
 #include "ui/views/vtk_view.h"
@@ -274,6 +276,122 @@ TEST_F(MainWindowTest, BodySettingsAreEditedAndUndone) {
   EXPECT_EQ(session().body(0).layers, 4);
   action(Act::redo)->trigger();
   EXPECT_EQ(session().body(0).layers, 8);
+}
+
+TEST_F(MainWindowTest, SettingsOfSeveralBodiesAreEditedAtOnce) {
+  open("box.stl");
+  for (int k = 0; k < 2; ++k) {
+    window_.open_files({QString::fromStdString((folder_ / "box.stl").string())}, true);
+    ASSERT_TRUE(wait_idle());
+  }
+  ASSERT_EQ(session().parts().size(), 3u);
+  auto* layers = window_.findChild<QSpinBox*>("layers");
+  session().select({0, 2}, 2);
+  auto* tree = window_.findChild<QTreeView*>("bodies");
+  EXPECT_EQ(tree->selectionModel()->selectedRows().size(), 2);
+  layers->setValue(6);
+  EXPECT_EQ(session().body(0).layers, 6);
+  EXPECT_EQ(session().body(1).layers, 4);
+  EXPECT_EQ(session().body(2).layers, 6);
+  // What differs is not shown as if it were the same, and stays until it is changed.
+  session().select({1, 2}, 1);
+  EXPECT_EQ(layers->text(), "different");
+  auto* h_min = window_.findChild<LengthBox*>("h_min");
+  h_min->setValue(0.5);
+  EXPECT_EQ(session().body(1).layers, 4);
+  EXPECT_EQ(session().body(2).layers, 6);
+  EXPECT_EQ(session().body(2).h_min, 0.5);
+  action(Act::undo)->trigger();
+  EXPECT_FALSE(session().body(1).h_min.has_value());
+  EXPECT_FALSE(session().body(2).h_min.has_value());
+  // Rows chosen in the list are chosen everywhere.
+  tree->selectAll();
+  EXPECT_EQ(session().selection(), (std::vector<int>{0, 1, 2}));
+}
+
+TEST_F(MainWindowTest, MeshSettingsReachTheStudyAndSayWhatAutomaticIs) {
+  open("box.stl");
+  auto* chord = window_.findChild<LengthBox*>("chord_tolerance");
+  // The box is 30 x 20 x 4: 1/1000 of its diagonal is 0.0363.
+  EXPECT_EQ(chord->text(), "automatic: 0.0363 mm");
+  EXPECT_EQ(window_.findChild<LengthBox*>("h_min")->text(), "automatic: 0.0363 mm");
+  EXPECT_EQ(window_.findChild<LengthBox*>("h_max")->text(), "no bound");
+  chord->setValue(0.1);
+  window_.findChild<LengthBox*>("h_max")->setValue(3);
+  window_.findChild<QSpinBox*>("seed")->setValue(7);
+  window_.findChild<QSpinBox*>("iterations")->setValue(3);
+  EXPECT_EQ(session().study().options.chord_tolerance, 0.1);
+  EXPECT_EQ(session().body(0).h_max, 3);
+  EXPECT_EQ(session().study().options.seed, 7u);
+  EXPECT_EQ(session().study().options.iterations, 3);
+  // A smallest size above the largest one would be refused by the run: it moves the other.
+  window_.findChild<LengthBox*>("h_min")->setValue(5);
+  EXPECT_EQ(session().body(0).h_max, 5);
+  chord->setValue(0);
+  EXPECT_FALSE(session().study().options.chord_tolerance.has_value());
+}
+
+TEST_F(MainWindowTest, AnotherChordToleranceMeansOtherSurfacesWithTheNextRun) {
+  ASSERT_TRUE(write_sample("curved_shell", folder_ / "shell.step"));
+  open("shell.step");
+  fake_.step = std::chrono::milliseconds(10);
+  const std::size_t before = session().parts()[0].surface.facets.size();
+  const double error = session().parts()[0].chord_error;
+  window_.findChild<LengthBox*>("chord_tolerance")->setValue(session().automatic_size(0) / 5);
+  run();
+  EXPECT_GT(session().parts()[0].surface.facets.size(), before);
+  EXPECT_LT(session().parts()[0].chord_error, error);
+  EXPECT_FALSE(session().outdated());
+  EXPECT_EQ(session().selected(), 0);
+}
+
+TEST_F(MainWindowTest, ClickSelectsTheBodyAndTheSelectedOneIsOutlined) {
+  ASSERT_TRUE(write_sample("twisted_tube", folder_ / "tube.step"));
+  open("tube.step");
+  ASSERT_EQ(session().parts().size(), 2u);
+  VtkView* view = window_.view().vtk_view();
+  QTest::qWait(50);
+  session().select(0);
+  QTest::qWait(50);
+  const QImage first = window_.view().picture();
+  session().select(1);
+  QTest::qWait(50);
+  EXPECT_GT(difference(first, window_.view().picture()), 0.001);
+  // The block encloses the tube: it is what a click in the middle hits, in the part and the mesh.
+  const auto volume = [this](int k) { return session().parts()[std::size_t(k)].cad_volume; };
+  const int block = volume(0) > volume(1) ? 0 : 1;
+  session().select(1 - block);
+  QTest::mouseClick(view, Qt::LeftButton, {}, view->rect().center());
+  EXPECT_EQ(session().selected(), block);
+  // Nothing is hit in the corner: the selection stays.
+  QTest::mouseClick(view, Qt::LeftButton, {}, QPoint(3, 3));
+  EXPECT_EQ(session().selected(), block);
+  // Ctrl adds; a hidden body cannot be hit.
+  BodySettings hidden = session().body(block);
+  hidden.visible = false;
+  session().edit_body(block, "hide", hidden);
+  const Vec<3> inside = session().parts()[std::size_t(1 - block)].surface.points.front();
+  QTest::qWait(50);
+  QTest::mouseClick(view, Qt::LeftButton, Qt::ControlModifier, view->rect().center());
+  if (session().selection().size() == 1) {
+    // The tube winds around the middle: aim at one of its own points.
+    QTest::mouseClick(view, Qt::LeftButton, Qt::ControlModifier, view->project(inside).toPoint());
+  }
+  EXPECT_EQ(session().selection().size(), 2u);
+}
+
+TEST_F(MainWindowTest, LayersAreJudgedByWhatTheSelectedBodyAsks) {
+  open("box.stl");
+  window_.open_files({QString::fromStdString((folder_ / "box.stl").string())}, true);
+  ASSERT_TRUE(wait_idle());
+  fake_.step = std::chrono::milliseconds(10);
+  run();
+  window_.view().set_color_by(ColorBy::layers);
+  session().select(1);
+  window_.findChild<QSpinBox*>("layers")->setValue(7);
+  EXPECT_EQ(window_.view().scene()->legend().high, 14);
+  session().select(0);
+  EXPECT_EQ(window_.view().scene()->legend().high, 8);
 }
 
 TEST_F(MainWindowTest, SettingsChangedAfterARunAreTold) {

@@ -33,9 +33,19 @@ BodyModel::BodyModel(Session& session, QObject* parent)
     beginResetModel();
     endResetModel();
   });
-  connect(&session, &Session::study_changed, this, [this] {
+  const auto refresh = [this] {
     if (rowCount() > 0) Q_EMIT dataChanged(index(0, 0), index(rowCount() - 1, column_count - 1));
-  });
+  };
+  connect(&session, &Session::study_changed, this, refresh);
+  connect(&session, &Session::run_finished, this, refresh);
+  connect(&session, &Session::iterations_changed, this, refresh);
+}
+
+const BodyOutcome* BodyModel::outcome(int row) const {
+  if (!session_.outcome()) return nullptr;
+  for (const BodyOutcome& body : session_.outcome()->bodies)
+    if (body.name == session_.body(row).name) return &body;
+  return nullptr;
 }
 
 int BodyModel::rowCount(const QModelIndex& parent) const {
@@ -82,6 +92,21 @@ QVariant BodyModel::data(const QModelIndex& index, int role) const {
       if (role == Qt::ToolTipRole)
         return tr("Smallest element size in mm; auto: 1/1000 of the body's diagonal");
       break;
+    case measured: {
+      const BodyOutcome* made = outcome(index.row());
+      const bool any = made && made->layers.places > 0;
+      if (role == Qt::DisplayRole) return any ? QString::number(made->layers.mean, 'f', 1) : "–";
+      if (role == Qt::ForegroundRole)
+        return !any                                     ? theme::faint_text
+               : made->layers.mean < made->layers_asked ? theme::warning
+                                                        : theme::good;
+      if (role == Qt::ToolTipRole)
+        return any ? tr("Layers measured in the mesh: %1 on average, 5 % of the walls below %2")
+                         .arg(made->layers.mean, 0, 'f', 2)
+                         .arg(made->layers.p5, 0, 'f', 2)
+                   : tr("Layers measured in the mesh, once there is one");
+      break;
+    }
     default:
       break;
   }
@@ -102,6 +127,8 @@ QVariant BodyModel::headerData(int section, Qt::Orientation orientation, int rol
       return tr("α");
     case h_min:
       return tr("h min");
+    case measured:
+      return tr("measured");
     default:
       return {};
   }
@@ -109,6 +136,7 @@ QVariant BodyModel::headerData(int section, Qt::Orientation orientation, int rol
 
 Qt::ItemFlags BodyModel::flags(const QModelIndex& index) const {
   Qt::ItemFlags flags = QAbstractTableModel::flags(index);
+  if (index.column() == measured) return flags;
   return flags | (index.column() == name ? Qt::ItemIsUserCheckable : Qt::ItemIsEditable);
 }
 

@@ -3,17 +3,20 @@
 #include <QAbstractTableModel>
 #include <QStyledItemDelegate>
 
+#include "core/study/run.h"
+
 namespace lamella::ui {
 
 class Session;
 
-/// The bodies of the study as rows: visible (check mark) and name, n, alpha, h_min.
+/// The bodies of the study as rows: visible (check mark) and name, n, alpha, h_min, and the layers
+/// measured in the mesh of the last run.
 /// Edits go to the session as undoable steps.
 class BodyModel : public QAbstractTableModel {
   Q_OBJECT
 
  public:
-  enum Column { name, layers, alpha, h_min, column_count };
+  enum Column { name, layers, alpha, h_min, measured, column_count };
 
   explicit BodyModel(Session& session, QObject* parent = nullptr);
 
@@ -26,6 +29,8 @@ class BodyModel : public QAbstractTableModel {
   bool setData(const QModelIndex& index, const QVariant& value, int role) override;
 
  private:
+  const BodyOutcome* outcome(int row) const;
+
   Session& session_;
 };
 

@@ -6,11 +6,11 @@
 #include <QSlider>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <cmath>
 
 #include "ui/session/session.h"
 #include "ui/theme.h"
-#include "ui/views/plot.h"
 
 namespace lamella::ui {
 namespace {
@@ -64,7 +64,7 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   row->addWidget(forward_);
   position_ = new QLabel;
   position_->setObjectName("soft");
-  position_->setMinimumWidth(190);
+  position_->setMinimumWidth(110);
   row->addWidget(position_);
   auto* logarithmic = new QCheckBox(tr("Logarithmic nodes"));
   row->addWidget(logarithmic);
@@ -77,6 +77,8 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   connect(forward_, &QToolButton::clicked, this,
           [this] { session_.show_iteration(session_.shown() + 1); });
   connect(&session, &Session::iterations_changed, this, &ConvergencePanel::follow_iterations);
+  connect(&session, &Session::selection_changed, this, &ConvergencePanel::follow_iterations);
+  connect(&session, &Session::run_finished, this, &ConvergencePanel::follow_iterations);
   connect(&session, &Session::shown_changed, this, &ConvergencePanel::follow_shown);
   follow_iterations();
 }
@@ -94,15 +96,40 @@ void ConvergencePanel::follow_iterations() {
     conformity.values.push_back(it.record.conformity);
   }
   nodes_->set_series({nodes});
-  layers_->set_series({mean, low});
   conformity_->set_series({conformity});
-  std::optional<double> asked;
-  for (const BodySettings& body : session_.study().bodies)
-    asked = std::max(asked.value_or(0), static_cast<double>(body.layers));
-  layers_->set_target(session_.iterations().empty() ? std::nullopt : asked, tr("asked"));
+  show_layers(mean, low);
   const QSignalBlocker block(slider_);
   slider_->setRange(0, std::max(0, static_cast<int>(session_.iterations().size()) - 1));
   follow_shown();
+}
+
+void ConvergencePanel::show_layers(Series mean, Series low) {
+  const auto& bodies = session_.study().bodies;
+  const int selected = session_.selected();
+  std::optional<double> asked;
+  QString title = tr("Layers through the walls");
+  if (selected >= 0 && selected < static_cast<int>(bodies.size())) {
+    const BodySettings& body = bodies[static_cast<std::size_t>(selected)];
+    asked = body.layers;
+    if (bodies.size() > 1) title = tr("Layers, all bodies");
+    // Once the run is over each body has a record of its own; the last value of one that was done
+    // early stands for the rest.
+    const auto& outcome = session_.outcome();
+    for (const BodyOutcome& made : outcome ? outcome->bodies : std::vector<BodyOutcome>{}) {
+      if (made.name != body.name) continue;
+      asked = made.layers_asked;
+      if (bodies.size() < 2 || made.records.empty()) continue;
+      title = tr("Layers, %1").arg(QString::fromStdString(made.name));
+      for (std::size_t k = 0; k < mean.values.size(); ++k) {
+        const LayerStats& stats = made.records[std::min(k, made.records.size() - 1)].layers;
+        mean.values[k] = stats.places > 0 ? stats.mean : std::nan("");
+        low.values[k] = stats.places > 0 ? stats.p5 : std::nan("");
+      }
+    }
+  }
+  layers_->set_title(title);
+  layers_->set_series({mean, low});
+  layers_->set_target(session_.iterations().empty() ? std::nullopt : asked, tr("asked"));
 }
 
 void ConvergencePanel::follow_shown() {
@@ -119,7 +146,9 @@ void ConvergencePanel::follow_shown() {
   }
   slider_->setValue(shown);
   const IterationRecord& record = session_.iterations()[shown].record;
-  QString text = record.iteration == 0 ? tr("0: first mesh") : QString::number(record.iteration);
+  QString text = session_.parts().empty() ? tr("opened mesh")
+                 : record.iteration == 0  ? tr("0: first mesh")
+                                          : QString::number(record.iteration);
   if (shown == last && last > 0) text += tr("  (latest)");
   position_->setText(text);
 }

@@ -2,13 +2,14 @@
 
 #include <QWidget>
 
+#include "ui/views/plot.h"
+
 class QLabel;
 class QSlider;
 class QToolButton;
 
 namespace lamella::ui {
 
-class Plot;
 class Session;
 
 /// Nodes, layers and conformity over the iterations, live, and the slider that looks back.
@@ -21,6 +22,8 @@ class ConvergencePanel : public QWidget {
  private:
   void follow_iterations();
   void follow_shown();
+  /// The layers of the selected body where they are known apart, else of all.
+  void show_layers(Series mean, Series low);
 
   Session& session_;
   Plot* nodes_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/study/measure.h"
 #include "ui/commands/edit_study.h"
 
 namespace lamella::ui {
@@ -66,6 +67,7 @@ bool Session::outdated() const {
   const Study& a = *run_study_;
   const Study& b = *study_;
   return a.options.iterations != b.options.iterations || a.options.seed != b.options.seed ||
+         a.options.chord_tolerance != b.options.chord_tolerance ||
          !std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), b.bodies.end(), same);
 }
 
@@ -81,9 +83,22 @@ void Session::show_iteration(int index) {
 }
 
 void Session::select(int part) {
-  if (part == selected_ || part >= static_cast<int>(parts_->size())) return;
-  selected_ = part;
+  select(part < 0 ? std::vector<int>{} : std::vector<int>{part}, part);
+}
+
+void Session::select(std::vector<int> parts, int current) {
+  std::sort(parts.begin(), parts.end());
+  std::erase_if(parts, [&](int p) { return p < 0 || p >= static_cast<int>(parts_->size()); });
+  if (std::find(parts.begin(), parts.end(), current) == parts.end())
+    current = parts.empty() ? -1 : parts.back();
+  if (parts == selection_ && current == selected_) return;
+  selection_ = std::move(parts);
+  selected_ = current;
   Q_EMIT selection_changed();
+}
+
+double Session::automatic_size(int part) const {
+  return 1e-3 * box_diagonal((*parts_)[static_cast<std::size_t>(part)].surface.points);
 }
 
 void Session::set_study(std::shared_ptr<const Study> study) {
@@ -120,10 +135,12 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
   LoadParams params;
   params.chord_tolerance = study_->options.chord_tolerance;
   params.angle_tolerance = study_->options.angle_tolerance;
+  if (add && !parts_->empty()) params = read_with_;
   params.unit = unit;
   begin(Activity::loading, [this, files, add, params](const Progress& progress) -> Worker::Done {
     std::vector<Part> parts;
     std::vector<std::string> inputs;
+    std::vector<PartSource> sources;
     std::optional<Error> error;
     QString no_unit;
     for (std::size_t k = 0; k < files.size() && !error; ++k) {
@@ -136,16 +153,21 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
         break;
       }
       if (is_stl(files[k])) no_unit = text(files[k].string());
-      for (Part& part : *loaded) parts.push_back(std::move(part));
+      for (std::size_t p = 0; p < loaded->size(); ++p) {
+        parts.push_back(std::move((*loaded)[p]));
+        sources.push_back({files[k], p, params.unit});
+      }
       inputs.push_back(files[k].string());
     }
-    return [this, parts = std::move(parts), inputs, error, add, no_unit, params]() mutable {
-      set_activity(Activity::idle);
-      if (error) return report(*error);
-      const QString size = parts.empty() ? QString() : box_size(parts.back().surface);
-      take_parts(std::move(parts), inputs, add);
-      if (!no_unit.isEmpty() && params.unit == 1) Q_EMIT unit_assumed(no_unit, size);
-    };
+    return
+        [this, parts = std::move(parts), sources, inputs, error, add, no_unit, params]() mutable {
+          set_activity(Activity::idle);
+          if (error) return report(*error);
+          const QString size = parts.empty() ? QString() : box_size(parts.back().surface);
+          if (!add) read_with_ = params;
+          take_parts(std::move(parts), std::move(sources), inputs, add);
+          if (!no_unit.isEmpty() && params.unit == 1) Q_EMIT unit_assumed(no_unit, size);
+        };
   });
 }
 
@@ -170,7 +192,7 @@ void Session::open_mesh(const std::filesystem::path& file) {
     return [this, read = std::move(read), file]() mutable {
       set_activity(Activity::idle);
       if (!read) return report(read.error());
-      take_parts({}, {}, false);
+      take_parts({}, {}, {}, false);
       Study study;
       study.name = file.stem().string();
       set_study(std::make_shared<Study>(study));
@@ -184,7 +206,8 @@ void Session::open_mesh(const std::filesystem::path& file) {
   });
 }
 
-void Session::take_parts(std::vector<Part> parts, std::vector<std::string> inputs, bool add) {
+void Session::take_parts(std::vector<Part> parts, std::vector<PartSource> sources,
+                         std::vector<std::string> inputs, bool add) {
   std::vector<Part> all;
   Study study;
   if (add) {
@@ -196,6 +219,8 @@ void Session::take_parts(std::vector<Part> parts, std::vector<std::string> input
                                  : (parts.empty() ? "untitled" : parts.front().name);
   }
   const std::size_t first_new = all.size();
+  if (!add) sources_.clear();
+  sources_.insert(sources_.end(), sources.begin(), sources.end());
   for (Part& part : parts) all.push_back(std::move(part));
   make_names_unique(all);
   study.inputs.insert(study.inputs.end(), inputs.begin(), inputs.end());
@@ -217,6 +242,7 @@ void Session::take_parts(std::vector<Part> parts, std::vector<std::string> input
   const bool any = !all.empty();
   parts_ = std::make_shared<const std::vector<Part>>(std::move(all));
   selected_ = -1;
+  selection_.clear();
   undo_.clear();
   clear_iterations();
   set_study(std::make_shared<Study>(std::move(study)));
@@ -232,8 +258,10 @@ void Session::remove_part(int index) {
   parts.erase(parts.begin() + index);
   study.bodies.erase(study.bodies.begin() + index);
   if (parts.empty()) study = Study{};
+  sources_.erase(sources_.begin() + index);
   parts_ = std::make_shared<const std::vector<Part>>(std::move(parts));
   selected_ = -1;
+  selection_.clear();
   undo_.clear();
   clear_iterations();
   set_study(std::make_shared<Study>(std::move(study)));
@@ -265,25 +293,72 @@ void Session::run() {
   Q_EMIT logged(tr("Run: %1, at most %2 iterations")
                     .arg(bodies_text(parts_->size()))
                     .arg(study_->options.iterations));
-  begin(Activity::running, [this, study = study_, parts = parts_](const Progress& progress) {
-    const auto meshers = services_.meshers ? services_.meshers()
-                                           : std::vector<std::shared_ptr<const VolumeMesher>>{};
-    Result<Outcome> result = services_.run(
-        *study, *parts, meshers, progress,
-        [this](const IterationRecord& record, std::shared_ptr<const MeshState> state) {
-          worker_.post([this, record, state = std::move(state)] {
-            Q_EMIT logged(tr("Iteration %1: %L2 nodes, %L3 elements, layers %4 (5 %: %5), %6 s")
-                              .arg(record.iteration)
-                              .arg(record.nodes)
-                              .arg(record.elements)
-                              .arg(record.layers.mean, 0, 'f', 1)
-                              .arg(record.layers.p5, 0, 'f', 1)
-                              .arg(record.seconds, 0, 'f', 1));
-            add_iteration({record, state});
+  // The surfaces spend a share of the chord tolerance: another one needs other surfaces.
+  LoadParams params = read_with_;
+  params.chord_tolerance = study_->options.chord_tolerance;
+  const bool again = params.chord_tolerance != read_with_.chord_tolerance;
+  begin(
+      Activity::running,
+      [this, study = study_, parts = parts_, sources = sources_, params,
+       again](const Progress& whole) mutable -> Worker::Done {
+        if (again) {
+          auto read = read_again(*parts, sources, params, whole.portion(0, 0.05, "reading"));
+          if (!read)
+            return [this, error = read.error()]() mutable { finish_run(std::move(error)); };
+          parts = *read;
+          worker_.post([this, parts, params] {
+            parts_ = parts;
+            read_with_ = params;
+            Q_EMIT surfaces_changed();
           });
-        });
-    return [this, result = std::move(result)]() mutable { finish_run(std::move(result)); };
-  });
+        }
+        const Progress progress = whole.portion(again ? 0.05 : 0, 1);
+        const auto meshers = services_.meshers ? services_.meshers(study->options.seed)
+                                               : std::vector<std::shared_ptr<const VolumeMesher>>{};
+        Result<Outcome> result = services_.run(
+            *study, *parts, meshers, progress,
+            [this](const IterationRecord& record, std::shared_ptr<const MeshState> state) {
+              worker_.post([this, record, state = std::move(state)] {
+                Q_EMIT logged(tr("Iteration %1: %L2 nodes, %L3 elements, layers %4 (5 %: %5), %6 s")
+                                  .arg(record.iteration)
+                                  .arg(record.nodes)
+                                  .arg(record.elements)
+                                  .arg(record.layers.mean, 0, 'f', 1)
+                                  .arg(record.layers.p5, 0, 'f', 1)
+                                  .arg(record.seconds, 0, 'f', 1));
+                add_iteration({record, state});
+              });
+            });
+        return [this, result = std::move(result)]() mutable { finish_run(std::move(result)); };
+      });
+}
+
+Result<std::shared_ptr<const std::vector<Part>>> Session::read_again(
+    const std::vector<Part>& parts, const std::vector<PartSource>& sources,
+    const LoadParams& params, const Progress& progress) {
+  std::vector<Part> all = parts;
+  std::vector<Part> file;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (k == 0 || sources[k].file != sources[k - 1].file ||
+        sources[k].unit != sources[k - 1].unit) {
+      LoadParams own = params;
+      own.unit = sources[k].unit;
+      const auto count = static_cast<double>(all.size());
+      auto loaded = services_.load_parts(
+          sources[k].file, own,
+          progress.portion(static_cast<double>(k) / count, static_cast<double>(k + 1) / count));
+      if (!loaded) return loaded.error();
+      file = std::move(*loaded);
+    }
+    if (sources[k].index >= file.size())
+      return Error{Code::bad_input,
+                   "\"" + sources[k].file.string() + "\" has changed since it was opened.",
+                   "Open it again."};
+    Part part = file[sources[k].index];
+    part.name = all[k].name;
+    all[k] = std::move(part);
+  }
+  return std::make_shared<const std::vector<Part>>(std::move(all));
 }
 
 void Session::finish_run(Result<Outcome> result) {
@@ -352,6 +427,24 @@ void Session::export_mesh(const std::filesystem::path& file) {
 
 void Session::edit(const QString& what, Study after) {
   undo_.push(new EditStudy(*this, what, std::make_shared<Study>(std::move(after))));
+}
+
+void Session::edit_selection(const QString& what,
+                             const std::function<void(BodySettings&)>& change) {
+  Study study = *study_;
+  bool changed = false;
+  for (const int k : selection_) {
+    const BodySettings before = study.bodies[k];
+    change(study.bodies[k]);
+    changed =
+        changed || !same(before, study.bodies[k]) || before.visible != study.bodies[k].visible;
+  }
+  if (!changed) return;
+  const QString title =
+      selection_.size() == 1
+          ? tr("%1 of %2").arg(what, text(study.bodies[std::size_t(selected_)].name))
+          : tr("%1 of %2 bodies").arg(what).arg(selection_.size());
+  edit(title, std::move(study));
 }
 
 void Session::edit_body(int index, const QString& what, const BodySettings& after) {

@@ -4,6 +4,7 @@
 #include <QObject>
 #include <QUndoStack>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -20,6 +21,13 @@ enum class Activity { idle, loading, running, exporting };
 struct Iteration {
   IterationRecord record;
   std::shared_ptr<const MeshState> state;
+};
+
+/// Where a part came from, so that it can be read again with another tolerance.
+struct PartSource {
+  std::filesystem::path file;
+  std::size_t index = 0;  ///< among the bodies of its file
+  double unit = 1;        ///< mm per unit of the file
 };
 
 /// The open study and everything that happens to it; the panels and views only follow it.
@@ -54,9 +62,16 @@ class Session : public QObject {
   std::shared_ptr<const MeshState> shown_state() const;
   void show_iteration(int index);
 
-  /// Part selected everywhere; -1: none.
+  /// Part selected everywhere; -1: none. Of several it is the one chosen last.
   int selected() const { return selected_; }
+  /// Every selected part, in rising order; edits of settings go to all of them.
+  const std::vector<int>& selection() const { return selection_; }
   void select(int part);
+  /// Selects several; `current` is one of them, or -1 with none.
+  void select(std::vector<int> parts, int current);
+
+  /// Chord tolerance a part gets when the study has none, mm; its smallest size likewise.
+  double automatic_size(int part) const;
 
   /// Reads a part file and replaces the study, or adds to it. `unit`: mm per unit of an STL.
   void open(const std::vector<std::filesystem::path>& files, bool add = false, double unit = 1);
@@ -76,9 +91,13 @@ class Session : public QObject {
   /// Changes the study as one undoable step called `what`.
   void edit(const QString& what, Study after);
   void edit_body(int index, const QString& what, const BodySettings& after);
+  /// Changes the settings of every selected body in one undoable step.
+  void edit_selection(const QString& what, const std::function<void(BodySettings&)>& change);
 
  Q_SIGNALS:
   void parts_changed();
+  /// The same parts have finer or coarser surfaces.
+  void surfaces_changed();
   void study_changed();
   void selection_changed();
   /// An iteration was added, or all were cleared.
@@ -100,7 +119,12 @@ class Session : public QObject {
   void set_activity(Activity activity);
   void begin(Activity activity, Worker::Job job);
   void report(const Error& error);
-  void take_parts(std::vector<Part> parts, std::vector<std::string> inputs, bool add);
+  void take_parts(std::vector<Part> parts, std::vector<PartSource> sources,
+                  std::vector<std::string> inputs, bool add);
+  /// The parts with surfaces of the study's tolerances; for use by the running job.
+  Result<std::shared_ptr<const std::vector<Part>>> read_again(
+      const std::vector<Part>& parts, const std::vector<PartSource>& sources,
+      const LoadParams& params, const Progress& progress);
   void clear_iterations();
   void add_iteration(Iteration iteration);
   void finish_run(Result<Outcome> result);
@@ -108,12 +132,15 @@ class Session : public QObject {
   Services services_;
   std::shared_ptr<const Study> study_ = std::make_shared<Study>();
   std::shared_ptr<const std::vector<Part>> parts_ = std::make_shared<std::vector<Part>>();
+  std::vector<PartSource> sources_;  // one a part
+  LoadParams read_with_;             // tolerances of the parts' surfaces
   std::vector<Iteration> iterations_;
   std::optional<Outcome> outcome_;
   std::shared_ptr<const Study> run_study_;
   Activity activity_ = Activity::idle;
   int shown_ = -1;
   int selected_ = -1;
+  std::vector<int> selection_;
   QUndoStack undo_;
   QElapsedTimer clock_;
   Worker worker_;  // last: its destructor waits for the job that uses the rest

@@ -29,6 +29,7 @@ struct Legend {
   double low = 0;
   double high = 1;
   ColorMap map;
+  QString missing{};  ///< what gray stands for; empty: nothing is gray
 };
 
 }  // namespace lamella::ui

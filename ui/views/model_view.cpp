@@ -8,6 +8,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QMenu>
+#include <QMouseEvent>
 #include <QSlider>
 #include <QTimer>
 #include <QToolButton>
@@ -23,8 +24,6 @@ namespace lamella::ui {
 namespace {
 
 constexpr int slider_steps = 1000;
-
-const Vec<3> iso_direction = Vec<3>(-0.55, 0.72, -0.58).normalized();
 
 QToolButton* button(QAction* action) {
   auto* b = new QToolButton;
@@ -75,7 +74,10 @@ ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
       apply_section();
     });
     overlay_ = new Overlay(*view_, *tool_);
-    view_->set_mouse_filter([this](QMouseEvent* event) { return tool_->mouse(event); });
+    view_->set_mouse_filter([this](QMouseEvent* event) { return mouse(event); });
+    connect(view_, &VtkView::rendered, this, [this] {
+      if (scene_->set_pixel_size(view_->pixel_size())) view_->update();
+    });
     inner->addWidget(view_);
   } else {
     auto* label =
@@ -191,6 +193,8 @@ QWidget* ModelView::make_bar() {
 void ModelView::connect_session() {
   connect(&session_, &Session::parts_changed, this, &ModelView::follow_parts);
   connect(&session_, &Session::study_changed, this, &ModelView::follow_study);
+  connect(&session_, &Session::surfaces_changed, this, &ModelView::follow_surfaces);
+  connect(&session_, &Session::selection_changed, this, &ModelView::follow_selection);
   connect(&session_, &Session::shown_changed, this, &ModelView::follow_mesh);
 }
 
@@ -243,16 +247,51 @@ void ModelView::connect_actions() {
   }
 }
 
-void ModelView::follow_parts() {
+void ModelView::follow_surfaces() {
   if (!scene_) return;
   std::vector<QColor> colors;
   for (std::size_t k = 0; k < session_.parts().size(); ++k)
     colors.push_back(body_color(static_cast<int>(k), session_.parts()[k].color));
   scene_->set_parts(session_.parts(), colors);
-  set_section(std::nullopt);
   follow_study();
+}
+
+void ModelView::follow_parts() {
+  if (!scene_) return;
+  follow_surfaces();
+  set_section(std::nullopt);
   tool_->set_bounds(scene_->bounds());
   look_isometric();
+}
+
+void ModelView::follow_selection() {
+  if (!scene_) return;
+  scene_->set_selected(session_.selection());
+  follow_study();
+}
+
+bool ModelView::mouse(QMouseEvent* event) {
+  const bool taken = tool_->mouse(event);
+  if (event->type() == QEvent::MouseButtonPress) {
+    pressed_.reset();
+    if (!taken && event->button() == Qt::LeftButton) pressed_ = event->position();
+  } else if (event->type() == QEvent::MouseButtonRelease && pressed_) {
+    const QPointF moved = event->position() - *pressed_;
+    pressed_.reset();
+    if (std::hypot(moved.x(), moved.y()) < 4) {
+      const double ratio = view_->devicePixelRatioF();
+      const int part = scene_->part_at(event->position().x() * ratio,
+                                       (view_->height() - 1 - event->position().y()) * ratio);
+      std::vector<int> parts = session_.selection();
+      if (part >= 0 && event->modifiers() & Qt::ControlModifier) {
+        if (std::erase(parts, part) == 0) parts.push_back(part);
+        session_.select(std::move(parts), part);
+      } else if (part >= 0) {
+        session_.select(part);
+      }
+    }
+  }
+  return taken;
 }
 
 void ModelView::follow_study() {
@@ -260,7 +299,8 @@ void ModelView::follow_study() {
   std::vector<bool> visible;
   int layers = 4;
   for (const BodySettings& body : session_.study().bodies) visible.push_back(body.visible);
-  if (!session_.study().bodies.empty()) layers = session_.study().bodies.front().layers;
+  const int count = static_cast<int>(session_.study().bodies.size());
+  if (count > 0) layers = session_.body(std::clamp(session_.selected(), 0, count - 1)).layers;
   scene_->set_visible(visible);
   scene_->set_color_by(color_by(), layers);
   refresh();
@@ -312,6 +352,9 @@ void ModelView::set_section(const std::optional<Section>& section) {
   section_ = section;
   actions_[Act::section]->setChecked(section.has_value());
   actions_[Act::flip]->setEnabled(section.has_value());
+  if (!section)
+    for (const Act act : {Act::section_x, Act::section_y, Act::section_z})
+      actions_[act]->setChecked(false);
   section_bar_->setVisible(section.has_value());
   if (!scene_) return;
   apply_section();
@@ -333,6 +376,9 @@ void ModelView::apply_section() {
 
 void ModelView::update_section_controls() {
   if (!section_) return;
+  for (int axis = 0; axis < 3; ++axis)
+    actions_[Act(int(Act::section_x) + axis)]->setChecked(std::abs(section_->normal[axis]) >
+                                                          0.9999);
   const QSignalBlocker block_slider(slider_);
   const QSignalBlocker block_position(position_);
   const auto [low, high] = range_along(scene_->bounds(), section_->normal);
@@ -352,7 +398,50 @@ void ModelView::look(const Vec<3>& direction, const Vec<3>& up) {
     view_->look(direction, up, scene_->bounds());
 }
 
-void ModelView::look_isometric() { look(iso_direction, Vec<3>::UnitZ()); }
+Vec<3> ModelView::first_direction() const {
+  // Flat parts are seen on their flat side, and from where they have more to show.
+  const auto b = scene_->bounds();
+  int thin = 0;
+  int wide = 0;
+  const Vec<3> size(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
+  size.minCoeff(&thin);
+  size.maxCoeff(&wide);
+  Vec<3> direction(-0.55, 0.72, -0.58);
+  if (size[thin] < 0.35 * size[3 - thin - wide]) {
+    direction = Vec<3>(-0.42, 0.48, -0.46);
+    direction[thin] = direction[thin] < 0 ? -0.85 : 0.85;
+    double shown = 0;  // CAD faces that look our way, less those that look away
+    double all = 0;
+    for (const Part& part : session_.parts()) {
+      std::vector<double> along(part.surface.faces.size());
+      all += static_cast<double>(along.size());
+      for (std::size_t k = 0; k < part.surface.facets.size(); ++k) {
+        const auto& f = part.surface.facets[k];
+        const Vec<3>& a = part.surface.points[static_cast<std::size_t>(f[0])];
+        const Vec<3> n = (part.surface.points[static_cast<std::size_t>(f[1])] - a)
+                             .cross(part.surface.points[static_cast<std::size_t>(f[2])] - a);
+        if (std::abs(n[thin]) > 0.5 * n.norm())
+          along[static_cast<std::size_t>(part.surface.facet_face[k])] += n[thin];
+      }
+      for (const double n : along)
+        if (n != 0) shown += n * direction[thin] < 0 ? 1 : -1;
+    }
+    // From below only if there is much more to see there.
+    const double much = thin == 2 ? 0.5 : 0.0;
+    if (shown < -much * all) direction[thin] = -direction[thin];
+  }
+  return direction.normalized();
+}
+
+void ModelView::look_isometric() {
+  if (scene_) look(first_direction(), Vec<3>::UnitZ());
+}
+
+void ModelView::look_near(const Vec<3>& center, double radius) {
+  if (!view_) return;
+  view_->fit({center[0] - radius, center[0] + radius, center[1] - radius, center[1] + radius,
+              center[2] - radius, center[2] + radius});
+}
 
 void ModelView::look_at_section() {
   if (!view_ || session_.empty()) return;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QImage>
+#include <QPointF>
 #include <QWidget>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 class QComboBox;
 class QDoubleSpinBox;
 class QLabel;
+class QMouseEvent;
 class QSlider;
 
 namespace lamella::ui {
@@ -40,6 +42,8 @@ class ModelView : public QWidget {
   void look_isometric();
   /// Cuts in the middle, if nothing is cut yet, and looks at the cut from near.
   void look_at_section();
+  /// Brings the cube of half width `radius` (mm) around `center` close.
+  void look_near(const Vec<3>& center, double radius);
   const Scene* scene() const { return scene_.get(); }
   VtkView* vtk_view() const { return view_; }
 
@@ -48,6 +52,10 @@ class ModelView : public QWidget {
   void connect_session();
   void connect_actions();
   void follow_parts();
+  void follow_surfaces();
+  void follow_selection();
+  bool mouse(QMouseEvent* event);
+  Vec<3> first_direction() const;
   void follow_study();
   void follow_mesh();
   void apply_section();
@@ -61,6 +69,7 @@ class ModelView : public QWidget {
   Overlay* overlay_ = nullptr;
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<SectionTool> tool_;
+  std::optional<QPointF> pressed_;  // where a click may have begun
   QComboBox* colors_ = nullptr;
   QWidget* section_bar_ = nullptr;
   QSlider* slider_ = nullptr;

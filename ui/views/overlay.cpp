@@ -78,7 +78,8 @@ void Overlay::paint_legend(QPainter& painter) const {
   constexpr int margin = 16;
   QFont small = font();
   small.setPointSizeF(small.pointSizeF() - 1);
-  const QRectF box(margin, margin, bar_width + 28, 68);
+  const int height = legend_.map.stops.empty() ? 58 : legend_.missing.isEmpty() ? 68 : 88;
+  const QRectF box(margin, margin, bar_width + 28, height);
   painter.setPen(QPen(theme::border, 1));
   painter.setBrush(QColor(255, 255, 255, 232));
   painter.drawRoundedRect(box, 8, 8);
@@ -88,6 +89,12 @@ void Overlay::paint_legend(QPainter& painter) const {
   painter.setFont(bold);
   painter.drawText(box.adjusted(14, 7, -14, 0), Qt::AlignLeft | Qt::AlignTop, legend_.title);
 
+  painter.setFont(small);
+  if (legend_.map.stops.empty()) {  // nothing to read off
+    painter.setPen(theme::soft_text);
+    painter.drawText(box.adjusted(14, 29, -14, 0), Qt::AlignLeft | Qt::AlignTop, legend_.missing);
+    return;
+  }
   const QRectF bar(box.left() + 14, box.top() + 29, bar_width, bar_height);
   painter.setRenderHint(QPainter::Antialiasing, false);
   for (int x = 0; x < bar_width; ++x) {
@@ -106,6 +113,11 @@ void Overlay::paint_legend(QPainter& painter) const {
     painter.drawText(QRectF(left, bar.bottom() + 3, 60, 18), int(align) | int(Qt::AlignTop),
                      QString::number(value, 'g', 3));
   }
+  if (legend_.missing.isEmpty()) return;
+  const QRectF swatch(bar.left(), bar.bottom() + 25, 12, 12);
+  painter.fillRect(swatch, theme::missing);
+  painter.drawText(QRectF(swatch.right() + 7, swatch.top() - 3, 200, 18),
+                   Qt::AlignLeft | Qt::AlignVCenter, legend_.missing);
 }
 
 void Overlay::paint_scale(QPainter& painter) const {

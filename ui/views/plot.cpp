@@ -32,6 +32,11 @@ Plot::Plot(const QString& title, QWidget* parent) : QWidget(parent), title_(titl
   setMouseTracking(true);
 }
 
+void Plot::set_title(const QString& title) {
+  title_ = title;
+  update();
+}
+
 void Plot::set_series(std::vector<Series> series) {
   series_ = std::move(series);
   update_range();
@@ -146,13 +151,9 @@ void Plot::paintEvent(QPaintEvent*) {
   small.setPointSizeF(small.pointSizeF() - 1);
   QFont bold = font();
   bold.setWeight(QFont::DemiBold);
-  painter.setFont(bold);
-  painter.setPen(theme::text);
-  painter.drawText(QRectF(12, 4, width() - 24, 20), Qt::AlignLeft | Qt::AlignVCenter, title_);
-
   painter.setFont(small);
-  if (series_.size() > 1) {
-    double right = a.right();
+  double right = a.right();
+  if (series_.size() > 1 && count() > 0) {
     for (auto s = series_.rbegin(); s != series_.rend(); ++s) {
       const double w = painter.fontMetrics().horizontalAdvance(s->name);
       painter.setPen(theme::soft_text);
@@ -162,6 +163,12 @@ void Plot::paintEvent(QPaintEvent*) {
       right -= w + 30;
     }
   }
+  painter.setFont(bold);
+  painter.setPen(theme::text);
+  painter.drawText(
+      QRectF(12, 4, right - 12, 20), Qt::AlignLeft | Qt::AlignVCenter,
+      painter.fontMetrics().elidedText(title_, Qt::ElideRight, static_cast<int>(right - 12)));
+  painter.setFont(small);
   const int n = count();
   for (const double v : n > 0 ? ticks() : std::vector<double>{}) {
     const double y = y_of(v);

@@ -21,6 +21,7 @@ class Plot : public QWidget {
  public:
   explicit Plot(const QString& title, QWidget* parent = nullptr);
 
+  void set_title(const QString& title);
   void set_series(std::vector<Series> series);
   /// A dashed horizontal line called `name`, as the value asked for.
   void set_target(std::optional<double> value, const QString& name = {});

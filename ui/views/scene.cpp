@@ -3,6 +3,7 @@
 #include <vtkActor.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkCellPicker.h>
 #include <vtkCutter.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkExtractGeometry.h>
@@ -25,6 +26,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ui/theme.h"
+#include "ui/views/mesh_data.h"
+
 namespace lamella::ui {
 namespace {
 
@@ -33,39 +37,6 @@ constexpr const char* node_array = "node";
 constexpr const char* thickness_array = "thickness";
 constexpr const char* layers_array = "layers";
 constexpr const char* quality_array = "quality";
-
-vtkSmartPointer<vtkPoints> make_points(const std::vector<Vec<3>>& from) {
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(from.size()));
-  for (std::size_t k = 0; k < from.size(); ++k)
-    points->SetPoint(static_cast<vtkIdType>(k), from[k].data());
-  return points;
-}
-
-vtkSmartPointer<vtkPolyData> surface_data(const ReferenceSurface<3>& surface) {
-  vtkNew<vtkCellArray> cells;
-  for (const auto& facet : surface.facets) {
-    const vtkIdType ids[3] = {facet[0], facet[1], facet[2]};
-    cells->InsertNextCell(3, ids);
-  }
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(make_points(surface.points));
-  data->SetPolys(cells);
-  return data;
-}
-
-vtkSmartPointer<vtkPolyData> feature_data(const ReferenceSurface<3>& surface) {
-  vtkNew<vtkCellArray> cells;
-  for (const auto& edge : surface.feature_edges) {
-    const vtkIdType ids[2] = {edge[0], edge[1]};
-    cells->InsertNextCell(2, ids);
-  }
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(make_points(surface.points));
-  data->SetLines(cells);
-  return data;
-}
 
 void set_color(vtkProperty& property, const QColor& color) {
   property.SetColor(color.redF(), color.greenF(), color.blueF());
@@ -79,50 +50,9 @@ void style_lines(vtkActor& actor, vtkPolyDataMapper& mapper) {
   actor.GetProperty()->LightingOff();
 }
 
-/// Edges between boundary facets of different CAD faces: the features of a mesh without its part.
-vtkSmartPointer<vtkPolyData> feature_data(const SimplexMesh<3>& mesh) {
-  std::vector<std::array<std::int32_t, 3>> sides;  // two nodes, CAD face
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const NodeId a = mesh.facets[f][k];
-      const NodeId b = mesh.facets[f][(k + 1) % 3];
-      sides.push_back(
-          {std::min(a, b), std::max(a, b), f < mesh.facet_face.size() ? mesh.facet_face[f] : 0});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  vtkNew<vtkCellArray> cells;
-  for (std::size_t k = 1; k < sides.size(); ++k) {
-    const auto& a = sides[k - 1];
-    const auto& b = sides[k];
-    if (a[0] != b[0] || a[1] != b[1] || a[2] == b[2]) continue;
-    const vtkIdType ids[2] = {a[0], a[1]};
-    cells->InsertNextCell(2, ids);
-  }
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(make_points(mesh.points));
-  data->SetLines(cells);
-  return data;
-}
-
 /// Paler and warmer: the inside of a cut body.
 QColor inside_color(const QColor& c) {
   return {(c.red() + 2 * 255) / 3, (c.green() + 2 * 250) / 3, (c.blue() + 2 * 238) / 3};
-}
-
-/// Values at quantiles, so that a few wild ones do not spoil the scale.
-std::pair<double, double> robust_range(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  if (values.empty()) return {0, 1};
-  const auto at = [&](double q) {
-    const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + k, values.end());
-    return values[static_cast<std::size_t>(k)];
-  };
-  const double low = at(0.01);
-  const double high = at(0.99);
-  if (high - low > 1e-9 * std::abs(high)) return {low, high};
-  return {low - 0.05 * std::abs(low), high + 0.05 * std::abs(high)};
 }
 
 struct PartActors {
@@ -138,6 +68,10 @@ struct Scene::Impl {
   vtkRenderer& renderer;
   std::vector<PartActors> parts;
   std::vector<bool> visible;
+  std::vector<int> selected;
+  double mesh_edge = 0;  // typical of what is drawn, mm; 0: unknown
+  double cut_edge = 0;
+  double pixel = 0;  // mm
   std::shared_ptr<const MeshState> state;
   std::vector<std::array<NodeId, 3>> outer;  // sorted boundary faces of the mesh, each sorted
   std::vector<int> part_of_body;
@@ -241,7 +175,16 @@ struct Scene::Impl {
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const bool on = part_visible(static_cast<int>(k));
       parts[k].surface->SetVisibility(on && !state);
-      parts[k].features->SetVisibility(on && features);
+      const bool outlined = parts.size() > 1 && std::find(selected.begin(), selected.end(),
+                                                          static_cast<int>(k)) != selected.end();
+      parts[k].features->SetVisibility(on && (features || outlined));
+      vtkProperty* line = parts[k].features->GetProperty();
+      if (outlined) {
+        set_color(*line, theme::accent);
+      } else {
+        line->SetColor(0.10, 0.15, 0.21);
+      }
+      line->SetLineWidth(outlined ? 3.2F : 1.6F);
       parts[k].surface->GetProperty()->SetEdgeVisibility(false);
     }
     mesh_actor->SetVisibility(state != nullptr);
@@ -320,6 +263,7 @@ struct Scene::Impl {
     update_visibility();
     if (!grid) {
       mesh_mapper->RemoveAllInputs();
+      recolor();
       return;
     }
     if (section && crinkle) {
@@ -348,12 +292,42 @@ struct Scene::Impl {
         shown = static_cast<std::size_t>(data->GetNumberOfCells());
       }
     }
+    mesh_edge = typical_edge(*mesh_mapper->GetInput());
+    cut_edge =
+        cut_mapper->GetNumberOfInputConnections(0) > 0 ? typical_edge(*cut_mapper->GetInput()) : 0;
+    shade_edges();
     recolor();
+  }
+
+  void shade_edges() {
+    const auto shade_one = [this](vtkActor& actor, double length) {
+      if (!(pixel > 0) || !(length > 0)) return;
+      // Full strength from 14 pixels an edge, the faintest at 3.
+      const double shade =
+          std::clamp((std::log(14.0) - std::log(length / pixel)) / std::log(14.0 / 3), 0.0, 1.0);
+      const auto mix = [&](double dark, double faint) { return dark + shade * (faint - dark); };
+      actor.GetProperty()->SetEdgeColor(mix(0.24, 0.56), mix(0.29, 0.59), mix(0.35, 0.63));
+    };
+    shade_one(*mesh_actor, mesh_edge);
+    shade_one(*cut_actor, cut_edge);
   }
 
   void recolor() {
     legend = {};
+    const auto tr = [](const char* text) { return QCoreApplication::translate("Scene", text); };
+    if (color_by != ColorBy::body && !has(color_by) && (state || !parts.empty())) {
+      legend.title = color_by == ColorBy::quality     ? tr("Quality c(T)")
+                     : color_by == ColorBy::thickness ? tr("Wall thickness")
+                                                      : tr("Layers through the wall");
+      legend.missing = state ? tr("not in this mesh") : tr("known once the part is meshed");
+    }
     if (!grid) return;
+    // Shading gives a body its shape, but the colors of values must be those of the legend.
+    const bool values = color_by != ColorBy::body && has(color_by);
+    mesh_actor->GetProperty()->SetAmbient(values ? 0.74 : 0.42);
+    mesh_actor->GetProperty()->SetDiffuse(values ? 0.28 : 0.68);
+    cut_actor->GetProperty()->SetAmbient(1);
+    cut_actor->GetProperty()->SetDiffuse(0);
     if (color_by != ColorBy::body && has(color_by)) fill_legend();
     color(*mesh_mapper, false);
     if (cut_mapper->GetNumberOfInputConnections(0) > 0) color(*cut_mapper, true);
@@ -384,7 +358,7 @@ struct Scene::Impl {
       const QColor c = legend.map.at((k + 0.5) / entries);
       table->SetTableValue(k, c.redF(), c.greenF(), c.blueF(), 1);
     }
-    table->SetNanColor(0.8, 0.82, 0.84, 1);
+    table->SetNanColor(theme::missing.redF(), theme::missing.greenF(), theme::missing.blueF(), 1);
     table->SetRange(legend.low, legend.high);
     mapper.SetLookupTable(table);
     mapper.UseLookupTableScalarRangeOn();
@@ -448,8 +422,9 @@ struct Scene::Impl {
       case ColorBy::layers: {
         // One band a layer, the one of n layers being the first good one.
         const int n = layers_asked;
-        legend = {tr("Layers through the wall"), 0, 2.0 * n, rating_map()};
+        legend = {tr("Layers through the wall, %1 asked").arg(n), 0, 2.0 * n, rating_map()};
         legend.map.bands = std::min(2 * n, 24);
+        legend.missing = tr("no wall to count in");
         break;
       }
     }
@@ -537,6 +512,41 @@ void Scene::set_visible(const std::vector<bool>& visible) {
   impl_->update_visibility();
 }
 
+void Scene::set_selected(const std::vector<int>& parts) {
+  if (parts == impl_->selected) return;
+  impl_->selected = parts;
+  impl_->update_visibility();
+}
+
+int Scene::part_at(double x, double y) const {
+  vtkNew<vtkCellPicker> picker;
+  picker->SetTolerance(0);
+  picker->PickFromListOn();
+  for (const PartActors& part : impl_->parts)
+    if (part.surface->GetVisibility()) picker->AddPickList(part.surface);
+  for (vtkActor* actor : {impl_->mesh_actor.Get(), impl_->cut_actor.Get()})
+    if (actor->GetVisibility()) picker->AddPickList(actor);
+  if (!picker->Pick(x, y, 0, &impl_->renderer)) return -1;
+  for (std::size_t k = 0; k < impl_->parts.size(); ++k)
+    if (picker->GetActor() == impl_->parts[k].surface) return static_cast<int>(k);
+  auto* element = vtkIntArray::SafeDownCast(
+      picker->GetDataSet() ? picker->GetDataSet()->GetCellData()->GetArray(element_array)
+                           : nullptr);
+  if (!element || picker->GetCellId() < 0 || !impl_->state) return -1;
+  const auto e = static_cast<std::size_t>(element->GetValue(picker->GetCellId()));
+  const SimplexMesh<3>& mesh = impl_->state->mesh;
+  return impl_
+      ->part_of_body[mesh.element_body.empty() ? 0
+                                               : static_cast<std::size_t>(mesh.element_body[e])];
+}
+
+bool Scene::set_pixel_size(double size) {
+  if (!(size > 0) || std::abs(size - impl_->pixel) < 0.02 * impl_->pixel) return false;
+  impl_->pixel = size;
+  impl_->shade_edges();
+  return true;
+}
+
 void Scene::set_color_by(ColorBy color_by, int layers_asked) {
   impl_->color_by = color_by;
   impl_->layers_asked = layers_asked;
@@ -582,7 +592,7 @@ void Scene::set_features(bool on) {
 
 bool Scene::has(ColorBy color_by) const { return impl_->has(color_by); }
 
-Legend Scene::legend() const { return impl_->state ? impl_->legend : Legend{}; }
+Legend Scene::legend() const { return impl_->legend; }
 
 std::array<double, 6> Scene::bounds() const { return impl_->bounds; }
 

@@ -32,6 +32,14 @@ class Scene {
   /// Null shows the parts. Bodies are matched to parts by name.
   void set_mesh(std::shared_ptr<const MeshState> state);
   void set_visible(const std::vector<bool>& visible);
+  /// Parts outlined in the accent color.
+  void set_selected(const std::vector<int>& parts);
+  /// The part seen at `x`, `y` (device pixels from the bottom left); -1: none.
+  int part_at(double x, double y) const;
+  /// mm a pixel of the picture has: edges of elements a few pixels wide are drawn fainter, or the
+  /// picture would be all edges.
+  /// True when that asks for another picture.
+  bool set_pixel_size(double size);
   /// `layers_asked` centers the scale of ColorBy::layers.
   void set_color_by(ColorBy color_by, int layers_asked);
   /// Cuts the mesh as `set_crinkle` says, and the parts smoothly.

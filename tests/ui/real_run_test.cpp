@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include <QElapsedTimer>
+#include <QSignalSpy>
+#include <QSpinBox>
+#include <QTest>
+#include <cmath>
+
+#include "app/window_services.h"
+#include "core/cad/sample_parts.h"
+#include "core/io/msh.h"
+#include "core/io_vtk/vtu.h"
+#include "core/mesh/validate.h"
+#include "tests/support/temporary_folder.h"
+#include "ui/actions/actions.h"
+#include "ui/main_window.h"
+#include "ui/session/session.h"
+#include "ui/views/model_view.h"
+
+namespace lamella::ui {
+namespace {
+
+/// The window with the readers, meshers, loop and writers of the program itself.
+class RealRunTest : public testing::Test {
+ protected:
+  RealRunTest() : window_(window_services(folder_.path())) {
+    window_.show();
+    EXPECT_TRUE(QTest::qWaitForWindowExposed(&window_));
+  }
+
+  Session& session() { return window_.session(); }
+  QAction* action(Act act) { return window_.actions()[act]; }
+
+  bool wait_idle(int milliseconds = 60000) {
+    return QTest::qWaitFor([this] { return session().activity() == Activity::idle; }, milliseconds);
+  }
+
+  void open_sample(const std::string& name) {
+    const auto file = folder_ / (name + ".step");
+    ASSERT_TRUE(write_sample(name, file));
+    window_.open_files({QString::fromStdString(file.string())});
+    ASSERT_TRUE(wait_idle());
+    ASSERT_FALSE(session().parts().empty());
+  }
+
+  test::TemporaryFolder folder_;
+  MainWindow window_;
+};
+
+TEST_F(RealRunTest, OpensRunsCancelsRunsAgainCutsAndExports) {
+  open_sample("plate");
+  window_.findChild<QSpinBox*>("layers")->setValue(2);
+  window_.findChild<QSpinBox*>("iterations")->setValue(2);
+  ASSERT_EQ(session().body(0).layers, 2);
+  ASSERT_EQ(session().study().options.iterations, 2);
+
+  action(Act::run)->trigger();
+  ASSERT_TRUE(QTest::qWaitFor([this] { return !session().iterations().empty(); }, 60000));
+  ASSERT_EQ(session().activity(), Activity::running);
+  EXPECT_FALSE(action(Act::run)->isEnabled());
+  QElapsedTimer clock;
+  clock.start();
+  action(Act::cancel)->trigger();
+  EXPECT_FALSE(action(Act::cancel)->isEnabled());
+  ASSERT_TRUE(wait_idle());
+  EXPECT_LT(clock.elapsed(), 500);
+  ASSERT_TRUE(session().outcome().has_value());
+  EXPECT_TRUE(session().outcome()->cancelled);
+  ASSERT_NE(session().shown_state(), nullptr);
+  EXPECT_TRUE(validate<3>(session().shown_state()->mesh));
+  EXPECT_TRUE(action(Act::export_mesh)->isEnabled());
+
+  action(Act::run)->trigger();
+  ASSERT_EQ(session().activity(), Activity::running);
+  ASSERT_TRUE(wait_idle());
+  ASSERT_TRUE(session().outcome().has_value());
+  EXPECT_FALSE(session().outcome()->cancelled);
+  EXPECT_GT(session().iterations().size(), 1u);
+  const BodyOutcome& body = session().outcome()->bodies.at(0);
+  EXPECT_EQ(body.layers_asked, 2);
+  EXPECT_GE(body.layers.mean, 1.9);
+  EXPECT_NEAR(body.mesh_volume, body.cad_volume, 0.005 * body.cad_volume);
+  EXPECT_LE(body.boundary_distance, body.chord_tolerance);
+  const auto state = session().shown_state();
+  ASSERT_EQ(state, session().outcome()->state);
+
+  const std::size_t whole = window_.view().scene()->shown_elements();
+  EXPECT_EQ(whole, state->mesh.element_count());
+  action(Act::section)->setChecked(true);
+  QTest::qWait(50);
+  EXPECT_LT(window_.view().scene()->shown_elements(), whole);
+  EXPECT_GT(window_.view().scene()->shown_elements(), 0u);
+
+  QSignalSpy exported(&session(), &Session::exported);
+  for (const char* name : {"plate.msh", "plate.vtu"}) {
+    session().export_mesh(folder_ / name);
+    ASSERT_TRUE(wait_idle());
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / name));
+  }
+  EXPECT_EQ(exported.count(), 2);
+  const auto msh = read_msh(folder_ / "plate.msh");
+  ASSERT_TRUE(msh) << msh.error().message;
+  const auto vtu = read_vtu(folder_ / "plate.vtu");
+  ASSERT_TRUE(vtu) << vtu.error().message;
+  for (const SimplexMesh<3>* back : {&msh->mesh, &vtu->mesh}) {
+    EXPECT_EQ(back->node_count(), state->mesh.node_count());
+    EXPECT_EQ(back->element_count(), state->mesh.element_count());
+    EXPECT_EQ(back->bodies, state->mesh.bodies);
+    EXPECT_TRUE(validate<3>(*back));
+  }
+}
+
+}  // namespace
+}  // namespace lamella::ui

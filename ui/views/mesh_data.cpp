@@ -1,0 +1,137 @@
+#include "ui/views/mesh_data.h"
+
+#include <vtkCellArray.h>
+#include <vtkIdList.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lamella::ui {
+
+vtkSmartPointer<vtkPoints> make_points(const std::vector<Vec<3>>& from) {
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(from.size()));
+  for (std::size_t k = 0; k < from.size(); ++k)
+    points->SetPoint(static_cast<vtkIdType>(k), from[k].data());
+  return points;
+}
+
+vtkSmartPointer<vtkPolyData> surface_data(const ReferenceSurface<3>& surface) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> uses;  // CAD face, vertex
+  uses.reserve(3 * surface.facets.size());
+  for (std::size_t f = 0; f < surface.facets.size(); ++f)
+    for (const std::int32_t v : surface.facets[f]) uses.emplace_back(surface.facet_face[f], v);
+  std::sort(uses.begin(), uses.end());
+  uses.erase(std::unique(uses.begin(), uses.end()), uses.end());
+  std::vector<Vec<3>> points;
+  points.reserve(uses.size());
+  for (const auto& [face, vertex] : uses)
+    points.push_back(surface.points[static_cast<std::size_t>(vertex)]);
+  vtkNew<vtkCellArray> cells;
+  for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+    vtkIdType ids[3];
+    for (int k = 0; k < 3; ++k)
+      ids[k] = std::lower_bound(uses.begin(), uses.end(),
+                                std::pair(surface.facet_face[f], surface.facets[f][k])) -
+               uses.begin();
+    cells->InsertNextCell(3, ids);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(make_points(points));
+  data->SetPolys(cells);
+  return data;
+}
+
+vtkSmartPointer<vtkPolyData> feature_data(const ReferenceSurface<3>& surface) {
+  std::vector<std::array<std::int32_t, 3>> sides;  // two vertices, CAD face
+  for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = surface.facets[f][k];
+      const std::int32_t b = surface.facets[f][(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), surface.facet_face[f]});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  std::vector<std::array<std::int32_t, 2>> edges;
+  for (const auto& edge : surface.feature_edges)
+    edges.push_back({std::min(edge[0], edge[1]), std::max(edge[0], edge[1])});
+  for (std::size_t k = 1; k < sides.size(); ++k) {
+    const auto& a = sides[k - 1];
+    const auto& b = sides[k];
+    if (a[0] == b[0] && a[1] == b[1] && a[2] != b[2]) edges.push_back({a[0], a[1]});
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  vtkNew<vtkCellArray> cells;
+  for (const auto& edge : edges) {
+    const vtkIdType ids[2] = {edge[0], edge[1]};
+    cells->InsertNextCell(2, ids);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(make_points(surface.points));
+  data->SetLines(cells);
+  return data;
+}
+
+vtkSmartPointer<vtkPolyData> feature_data(const SimplexMesh<3>& mesh) {
+  std::vector<std::array<std::int32_t, 3>> sides;  // two nodes, CAD face
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const NodeId a = mesh.facets[f][k];
+      const NodeId b = mesh.facets[f][(k + 1) % 3];
+      sides.push_back(
+          {std::min(a, b), std::max(a, b), f < mesh.facet_face.size() ? mesh.facet_face[f] : 0});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  vtkNew<vtkCellArray> cells;
+  for (std::size_t k = 1; k < sides.size(); ++k) {
+    const auto& a = sides[k - 1];
+    const auto& b = sides[k];
+    if (a[0] != b[0] || a[1] != b[1] || a[2] == b[2]) continue;
+    const vtkIdType ids[2] = {a[0], a[1]};
+    cells->InsertNextCell(2, ids);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(make_points(mesh.points));
+  data->SetLines(cells);
+  return data;
+}
+
+std::pair<double, double> robust_range(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  if (values.empty()) return {0, 1};
+  const auto at = [&](double q) {
+    const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + k, values.end());
+    return values[static_cast<std::size_t>(k)];
+  };
+  const double low = at(0.01);
+  const double high = at(0.99);
+  if (high - low > 1e-9 * std::abs(high)) return {low, high};
+  return {low - 0.05 * std::abs(low), high + 0.05 * std::abs(high)};
+}
+
+double typical_edge(vtkPolyData& data) {
+  std::vector<double> lengths;
+  lengths.reserve(static_cast<std::size_t>(3 * data.GetNumberOfCells()));
+  vtkNew<vtkIdList> corners;
+  Vec<3> a;
+  Vec<3> b;
+  for (vtkIdType c = 0; c < data.GetNumberOfCells(); ++c) {
+    data.GetCellPoints(c, corners);
+    for (vtkIdType k = 0; k < corners->GetNumberOfIds(); ++k) {
+      data.GetPoint(corners->GetId(k), a.data());
+      data.GetPoint(corners->GetId((k + 1) % corners->GetNumberOfIds()), b.data());
+      lengths.push_back((a - b).norm());
+    }
+  }
+  if (lengths.empty()) return 0;
+  const auto quarter = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 4);
+  std::nth_element(lengths.begin(), quarter, lengths.end());
+  return *quarter;
+}
+
+}  // namespace lamella::ui
