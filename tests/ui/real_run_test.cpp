@@ -83,6 +83,9 @@ TEST_F(RealRunTest, OpensRunsCancelsRunsAgainCutsAndExports) {
   EXPECT_LE(body.boundary_distance, body.chord_tolerance);
   const auto state = session().shown_state();
   ASSERT_EQ(state, session().outcome()->state);
+  const IterationRecord& record =
+      session().iterations()[static_cast<std::size_t>(session().shown())].record;
+  EXPECT_EQ(record.nodes, state->mesh.node_count());
 
   const std::size_t whole = window_.view().scene()->shown_elements();
   EXPECT_EQ(whole, state->mesh.element_count());

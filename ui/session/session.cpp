@@ -369,24 +369,7 @@ void Session::finish_run(Result<Outcome> result) {
     return;
   }
   outcome_ = std::move(*result);
-  // The loop keeps its best mesh, which need not be the last one it told about.
-  if (outcome_->state) {
-    const auto best =
-        std::find_if(iterations_.begin(), iterations_.end(),
-                     [&](const Iteration& it) { return it.state == outcome_->state; });
-    if (best != iterations_.end()) {
-      show_iteration(static_cast<int>(best - iterations_.begin()));
-    } else {
-      Iteration last;
-      if (!outcome_->records.empty()) last.record = outcome_->records.back();
-      last.state = outcome_->state;
-      if (!iterations_.empty() && iterations_.back().record.iteration == last.record.iteration)
-        iterations_.pop_back();
-      shown_ = static_cast<int>(iterations_.size()) - 1;
-      add_iteration(std::move(last));
-      Q_EMIT shown_changed();
-    }
-  }
+  if (outcome_->state) keep_best(outcome_->state);
   for (const BodyOutcome& body : outcome_->bodies) {
     Q_EMIT logged(tr("%1: first mesh by %2, layers %3 asked, %4 on average (5 %: %5)")
                       .arg(text(body.name), text(body.first_mesh_by))
@@ -402,6 +385,28 @@ void Session::finish_run(Result<Outcome> result) {
           ? tr("Converged in %1 s.").arg(outcome_->seconds, 0, 'f', 1)
           : tr("Stopped after %1 s at the limit of iterations.").arg(outcome_->seconds, 0, 'f', 1));
   Q_EMIT run_finished();
+}
+
+void Session::keep_best(const std::shared_ptr<const MeshState>& state) {
+  // The loop keeps its best mesh, which need not be the last one it told about.
+  const bool follow = shown_ + 1 == static_cast<int>(iterations_.size());
+  const auto best =
+      std::find_if(iterations_.rbegin(), iterations_.rend(), [&](const Iteration& it) {
+        return it.record.nodes == state->mesh.node_count() &&
+               it.record.elements == state->mesh.element_count();
+      });
+  if (best != iterations_.rend()) {
+    best->state = state;
+    if (follow) show_iteration(static_cast<int>(iterations_.rend() - best) - 1);
+    return;
+  }
+  // Bodies whose best meshes are of different iterations.
+  Iteration mixed;
+  if (!outcome_->records.empty()) mixed.record = outcome_->records.back();
+  mixed.record.nodes = state->mesh.node_count();
+  mixed.record.elements = state->mesh.element_count();
+  mixed.state = state;
+  add_iteration(std::move(mixed));
 }
 
 void Session::cancel() {

@@ -128,6 +128,8 @@ class Session : public QObject {
   void clear_iterations();
   void add_iteration(Iteration iteration);
   void finish_run(Result<Outcome> result);
+  /// The mesh a run ends with, among the iterations.
+  void keep_best(const std::shared_ptr<const MeshState>& state);
 
   Services services_;
   std::shared_ptr<const Study> study_ = std::make_shared<Study>();
