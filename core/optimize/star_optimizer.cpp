@@ -7,6 +7,9 @@ namespace lamella {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+/// An edge whose elements all have a better c^2 is left alone: a sixth of the time for nothing
+/// measurable.
+constexpr double good_enough = 0.7 * 0.7;
 /// Cosine below which a facet may not replace another: keeps ridges and folds.
 constexpr double facet_turn = 0.8;
 /// A facet must not look away from the surface it stands for.
@@ -100,11 +103,14 @@ std::size_t StarOptimizer<D>::sweep(const Progress& progress) {
       const NodeId n = owned_[i];
       star_.clear();
       bool fresh = false;
+      double worst = infinity;
       for (auto e : topo_.around.of(s))
         if (Topology<D>::has(topo_.elements[e], n)) {
           star_.push_back(e);
           fresh = fresh || topo_.birth[e] > before;
+          worst = std::min(worst, quality_[e]);
         }
+      if (worst > good_enough) continue;
       if (fresh && process_edge(s, n)) ++operations;
     }
   }
