@@ -10,6 +10,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// An edge whose elements all have a better c^2 is left alone: a sixth of the time for nothing
 /// measurable.
 constexpr double good_enough = 0.7 * 0.7;
+/// Squared metric distance within which a moved node keeps the metric carried to it instead of
+/// asking the function again.
+constexpr double still_near = 0.01;
 /// Cosine below which a facet may not replace another: keeps ridges and folds.
 constexpr double facet_turn = 0.8;
 /// A facet must not look away from the surface it stands for.
@@ -40,6 +43,7 @@ StarOptimizer<D>::StarOptimizer(const SimplexMesh<D>& mesh, const MetricField<D>
   for (std::size_t e = 0; e < topo_.elements.size(); ++e)
     if (topo_.is_virtual(static_cast<std::int32_t>(e)))
       topo_.label[e] = model_.tag_of_facet(topo_.label[e]);
+  if (metric_function_) asked_ = mesh.points;
   quality_.resize(topo_.elements.size());
   mark_.resize(mesh.points.size(), 0);
   set_relaxation(1);
@@ -557,8 +561,11 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n) {
 template <int D>
 void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
   Apex apex = offered;
-  if (apex.node == 0 && metric_function_)
-    apex.metric = Packed<D>::from(metric_function_(apex.point));
+  if (apex.node == 0 && metric_function_) {
+    const bool near = moved != 0 && apex.metric.quad(apex.point - asked_[moved]) < still_near;
+    if (!near) apex.metric = Packed<D>::from(metric_function_(apex.point));
+    if (!near && moved != 0) asked_[moved] = apex.point;
+  }
   if (apex.node == 0 && moved != 0) {
     topo_.points[moved] = apex.point;
     metric_[moved] = apex.metric;
@@ -577,6 +584,10 @@ void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
       carried_.resize(topo_.points.size());
       done_.resize(topo_.points.size(), 0);
       mark_.resize(topo_.points.size(), 0);
+    }
+    if (metric_function_) {
+      asked_.resize(topo_.points.size());
+      asked_[v] = apex.point;
     }
     metric_[v] = apex.metric;
     carried_[v] = carrier_.carry(apex.metric);

@@ -72,6 +72,7 @@ class StarOptimizer {
   double flat_;                      ///< mm, below which a height counts as zero
   std::vector<Packed<D>> metric_;    ///< [node]
   std::vector<Packed<D>> carried_;   ///< [node]
+  std::vector<Vec<D>> asked_;        ///< [node] where the metric function was asked last
   std::vector<double> quality_;      ///< [element] c^2; virtual: infinity
   std::vector<std::uint32_t> done_;  ///< [node] clock of its last turn
 

@@ -155,6 +155,24 @@ TEST(Adapt, EveryMetricMeanReachesTheSameSizes) {
   }
 }
 
+TEST(Adapt, FindsAThinLayerThatNoNodeHasSeen) {
+  // A layer a fiftieth of the first mesh size wide, away from every node of it.
+  const MetricFunction<2> f = [](const Vec<2>& x) {
+    const double h = 0.01 + 0.5 * std::abs(x[0] - 0.37);
+    return Metric<2>(Vec<2>(1 / (h * h), 16).asDiagonal());
+  };
+  SimplexMesh<2> mesh = unit_box<2>(2);
+  for (int i = 0; i < 4; ++i) {
+    auto r = adapt<2>(mesh, sample<2>(mesh, f), nullptr, {}, {}, f);
+    ASSERT_TRUE(r.ok());
+    for (std::size_t n = 1; n < r->mesh.points.size(); ++n)
+      EXPECT_TRUE(r->metric[n].allFinite() && r->metric[n].determinant() > 0);
+    mesh = std::move(r->mesh);
+  }
+  EXPECT_TRUE(validate(mesh).ok());
+  EXPECT_GT(share_of_unit_edges<2>(mesh, f), 0.9);
+}
+
 TEST(Adapt, TellsAWrongMetricAndHonorsCancel) {
   const auto mesh = unit_box<3>(2);
   MetricField<3> metric(mesh.points.size(), Metric<3>::Identity());
