@@ -183,8 +183,8 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   add_json(i, info.json);
 
   SampleCommand sample;
-  CLI::App* s =
-      app.add_subcommand("sample", "Write a part made by code: " + joined(sample_names()));
+  CLI::App* s = app.add_subcommand(
+      "sample", "Write a part made by code, and a study of it: " + joined(sample_names()));
   s->add_option("NAME", sample.name, "Its name")->option_text(" ")->required();
   s->add_option("-o,--output", sample.output, "STEP file to write [NAME.step]")
       ->option_text("FILE");

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli_commands.h"
+#include "core/cad/load_parts.h"
 #include "core/cad/sample_parts.h"
 #include "core/io/medit.h"
 #include "core/mesh/check.h"
@@ -12,6 +13,7 @@
 #include "core/natural/layers.h"
 #include "core/optimize/adapt.h"
 #include "core/study/measure.h"
+#include "core/study/study_file.h"
 
 namespace lamella::cli {
 
@@ -337,6 +339,21 @@ int run_sample(const SampleCommand& c, Console& console) {
   const std::string output = c.output.empty() ? name + ".step" : c.output;
   if (Result<void> done = write_sample(name, output); !done) return console.fail(done.error());
   console.say("wrote " + output);
+
+  // The study beside it names every body, ready to be edited and meshed.
+  Result<std::vector<Part>> parts = load_parts(output, {}, console.progress());
+  if (!parts) return console.fail(parts.error());
+  Study study;
+  study.name = name;
+  study.inputs = {fs::path(output).filename().string()};
+  for (const Part& part : *parts) {
+    BodySettings body;
+    body.name = part.name;
+    study.bodies.push_back(body);
+  }
+  const fs::path file = fs::path(output).replace_extension(".study.json");
+  if (Result<void> done = write_study(study, file); !done) return console.fail(done.error());
+  console.say("wrote " + file.string() + ", a study of it: lamella-cli mesh takes it as well");
   return 0;
 }
 

@@ -184,7 +184,7 @@ TEST_F(Cli, APlateGetsItsLayersAndEveryFileAgrees) {
   EXPECT_GE(done["bodies"][0]["layers_mean"], 4);
   EXPECT_LE(done["bodies"][0]["boundary_distance"], done["bodies"][0]["chord_tolerance"]);
   EXPECT_EQ(folder.names(), (Names{"p.json", "p.mesh", "p.msh", "p.report.html", "p.report.json",
-                                   "p.sol", "p.vtu", "plate.step"}));
+                                   "p.sol", "p.vtu", "plate.step", "plate.study.json"}));
 
   const Result<MshContent> back = read_msh(folder / "p.msh");
   ASSERT_TRUE(back.ok());
@@ -258,6 +258,15 @@ TEST_F(Cli, AdaptsToAnAnalyticMetricIn2DAnd3D) {
   EXPECT_EQ(run("adapt cube.mesh --metric nonsense -o d.mesh"), 2);
 }
 
+TEST_F(Cli, ASampleBringsAStudyOfAllItsBodies) {
+  ASSERT_EQ(run("sample twisted_tube -o s.step"), 0) << err;
+  const json study = json::parse(read_file(folder / "s.study.json").value());
+  EXPECT_EQ(study["bodies"].size(), 2u);
+  ASSERT_EQ(run("sample plate -o plate.step"), 0) << err;
+  ASSERT_EQ(run("mesh plate.study.json -o p.msh"), 0) << err;
+  EXPECT_TRUE(read_msh(folder / "p.msh").ok());
+}
+
 TEST_F(Cli, CtrlCWritesTheBestMeshAndNothingElse) {
   ASSERT_EQ(run("sample t_junction -o t.step"), 0) << err;
   FILE* pipe = start("mesh t.step -n 6 --iterations 1000 --json -o t.msh");
@@ -270,7 +279,8 @@ TEST_F(Cli, CtrlCWritesTheBestMeshAndNothingElse) {
   EXPECT_TRUE(adapted);
   ::kill(pid, SIGINT);
   EXPECT_EQ(finish(pipe), 130) << err;
-  EXPECT_EQ(folder.names(), (Names{"t.msh", "t.report.html", "t.report.json", "t.step"}));
+  EXPECT_EQ(folder.names(),
+            (Names{"t.msh", "t.report.html", "t.report.json", "t.step", "t.study.json"}));
   EXPECT_TRUE(read_msh(folder / "t.msh").ok());
 }
 
