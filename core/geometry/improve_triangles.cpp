@@ -22,7 +22,8 @@ class Improver {
       const auto it = edges_.find(key(e[0], e[1]));
       if (it != edges_.end()) it->second.feature = true;
     }
-    limit_ = static_cast<std::size_t>(params.growth * static_cast<double>(s_.facets.size())) + 2000;
+    const auto n = static_cast<double>(s_.facets.size());
+    limit_ = static_cast<std::size_t>(std::min(params.growth * n, n + params.added)) + 2000;
   }
 
   void run() {

@@ -11,7 +11,8 @@ struct ImproveParams {
   double max_aspect = 15;    ///< longest edge over height above which a triangle is a needle
   double tolerance = 0;      ///< mm that the surface may move by where edges are flipped
   double shortest_edge = 0;  ///< mm: edges shorter than this are not split
-  double growth = 4;         ///< most facets afterwards, as a multiple of those before
+  double growth = 4;         ///< most facets afterwards, as a multiple of those before ..
+  double added = 20000;      ///< .. and most facets added: dense surfaces get no denser
 };
 
 /// Removes needles of a closed surface: flips edges inside a face where the triangles are flat to
