@@ -12,7 +12,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double good_enough = 0.7 * 0.7;
 /// Squared metric distance within which a moved node keeps the metric carried to it instead of
 /// asking the function again.
-constexpr double still_near = 0.01;
+constexpr double still_near = 0.0025;
 /// Cosine below which a facet may not replace another: keeps ridges and folds.
 constexpr double facet_turn = 0.8;
 /// A facet must not look away from the surface it stands for.
