@@ -12,8 +12,8 @@ inline constexpr double tessellation_share = 0.4;
 
 /// One face of the CAD model, or one patch of an STL between feature edges.
 struct SurfaceFace {
-  std::string name;                             ///< from the file, else empty
-  std::array<double, 3> color{-1, -1, -1};      ///< RGB in [0, 1]; negative: none
+  std::string name;                         ///< from the file, else empty
+  std::array<double, 3> color{-1, -1, -1};  ///< RGB in [0, 1]; negative: none
 };
 
 /// Triangulated boundary of one body, watertight, in mm: the shape that meshing must keep.
@@ -38,8 +38,8 @@ struct Part {
   std::string name;                         ///< product or file name, never empty
   std::array<double, 3> color{-1, -1, -1};  ///< RGB in [0, 1]; negative: none
   ReferenceSurface<3> surface;
-  double cad_volume = 0;     ///< mm^3 of the exact B-rep; of the triangles for an STL
-  double chord_error = 0;    ///< mm, bound of the tessellation's distance to the exact shape
+  double cad_volume = 0;           ///< mm^3 of the exact B-rep; of the triangles for an STL
+  double chord_error = 0;          ///< mm, bound of the tessellation's distance to the exact shape
   std::vector<std::string> notes;  ///< what reading found worth telling (unit, free shells, welds)
 };
 

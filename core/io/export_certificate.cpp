@@ -7,7 +7,8 @@ namespace lamella {
 namespace {
 
 void compare(const std::string& what, const std::vector<NamedMeasure>& a,
-             const std::vector<NamedMeasure>& b, bool names, double tolerance, ExportCertificate& out) {
+             const std::vector<NamedMeasure>& b, bool names, double tolerance,
+             ExportCertificate& out) {
   if (a.size() != b.size()) {
     out.finding += std::to_string(a.size()) + " " + what + " written, " + std::to_string(b.size()) +
                    " read back. ";
@@ -48,7 +49,8 @@ MeshSummary summarize(const SimplexMesh<3>& mesh) {
 }
 
 ExportCertificate certify(const std::string& file, const std::string& format,
-                          const MeshSummary& written, const MeshSummary& read_back, bool names, double tolerance) {
+                          const MeshSummary& written, const MeshSummary& read_back, bool names,
+                          double tolerance) {
   ExportCertificate out;
   out.file = file;
   out.format = format;

@@ -38,7 +38,6 @@ struct ExportCertificate {
 /// names out, for formats that have no place for them.
 ExportCertificate certify(const std::string& file, const std::string& format,
                           const MeshSummary& written, const MeshSummary& read_back,
-                          bool names = true,
-                          double tolerance = 1e-9);
+                          bool names = true, double tolerance = 1e-9);
 
 }  // namespace lamella

@@ -27,7 +27,7 @@ struct AdaptParams {
   int sweeps = 24;             ///< upper bound; the work set empties before
   double relaxation = 3;       ///< weight of the shape in the first sweeps, >= 1; 1: none
   int relaxed_sweeps = 3;      ///< upper bound of the relaxed sweeps
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;      ///< the node a round begins with; any seed is as good
 };
 
 template <int D>

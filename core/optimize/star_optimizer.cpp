@@ -28,6 +28,7 @@ StarOptimizer<D>::StarOptimizer(const SimplexMesh<D>& mesh, const MetricField<D>
     : topo_(Topology<D>::from(mesh)),
       model_(mesh, surface, tolerance, params.feature_angle),
       carrier_(params.mean),
+      seed_(params.seed),
       metric_function_(metric_at) {
   Vec<D> lo = mesh.points[1], hi = lo;
   for (std::size_t n = 1; n < mesh.points.size(); ++n) {
@@ -80,10 +81,14 @@ template <int D>
 std::size_t StarOptimizer<D>::sweep(const Progress& progress) {
   std::size_t operations = 0;
   const auto last = static_cast<NodeId>(topo_.points.size());
-  for (NodeId s = 1; s < last; ++s) {
-    if ((s & 15) == 0) {
+  // The seed says at which node the round begins.
+  const auto count = static_cast<std::uint64_t>(last) - 1;
+  const std::uint64_t first = (seed_ - 1) * 0x9E3779B97F4A7C15u % count;
+  for (std::uint64_t turn = 0; turn < count; ++turn) {
+    const auto s = static_cast<NodeId>(1 + (first + turn) % count);
+    if ((turn & 15) == 0) {
       if (progress.cancelled()) return operations;
-      progress.report(static_cast<double>(s) / last);
+      progress.report(static_cast<double>(turn) / static_cast<double>(count));
     }
     if (topo_.around.empty(s)) continue;
     bool stale = true;

@@ -67,6 +67,7 @@ class StarOptimizer {
   Topology<D> topo_;
   BoundaryModel<D> model_;
   MetricCarrier<D> carrier_;
+  std::uint64_t seed_;
   MetricFunction<D> metric_function_;
   QualityKernel<D> kernel_;
   double flat_;                      ///< mm, below which a height counts as zero

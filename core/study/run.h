@@ -17,22 +17,22 @@ namespace lamella {
 /// A mesh and what is known at its nodes and elements; shared, never changed.
 struct MeshState {
   SimplexMesh<3> mesh;
-  MetricField<3> metric;               ///< [node] natural metric asked at the node
-  std::vector<double> thickness;       ///< [node] wall thickness 2 r, mm; entry 0 unused
-  std::vector<double> layers;          ///< [node] layers measured back; NaN where not measured
-  std::vector<double> quality;         ///< [element] c(T), eq. (3.7), in `metric`
+  MetricField<3> metric;          ///< [node] natural metric asked at the node
+  std::vector<double> thickness;  ///< [node] wall thickness 2 r, mm; entry 0 unused
+  std::vector<double> layers;     ///< [node] layers measured back; NaN where not measured
+  std::vector<double> quality;    ///< [element] c(T), eq. (3.7), in `metric`
 };
 
 /// What became of one body.
 struct BodyOutcome {
   std::string name;
   int layers_asked = 0;
-  std::string first_mesh_by;       ///< name of the mesher that made the first mesh
-  double cad_volume = 0;           ///< mm^3
-  double mesh_volume = 0;          ///< mm^3
-  double boundary_distance = 0;    ///< mm, largest distance of boundary sample points to the surface
-  double chord_tolerance = 0;      ///< mm, the one that was used
-  double h_min = 0;                ///< mm, the one that was used
+  std::string first_mesh_by;     ///< name of the mesher that made the first mesh
+  double cad_volume = 0;         ///< mm^3
+  double mesh_volume = 0;        ///< mm^3
+  double boundary_distance = 0;  ///< mm, largest distance of boundary sample points to the surface
+  double chord_tolerance = 0;    ///< mm, the one that was used
+  double h_min = 0;              ///< mm, the one that was used
   LayerStats layers;
   std::vector<IterationRecord> records;
   std::vector<std::string> notes;
@@ -41,15 +41,14 @@ struct BodyOutcome {
 struct Outcome {
   std::shared_ptr<const MeshState> state;  ///< all bodies in one mesh
   std::vector<BodyOutcome> bodies;
-  std::vector<IterationRecord> records;    ///< of the whole
-  bool cancelled = false;                  ///< stopped early: `state` is the best so far
-  bool converged = false;                  ///< every body has n layers in the mean and settled
+  std::vector<IterationRecord> records;  ///< of the whole
+  bool cancelled = false;                ///< stopped early: `state` is the best so far
+  bool converged = false;                ///< every body has n layers in the mean and settled
   double seconds = 0;
 };
 
 /// Told after each iteration, from the worker thread.
-using IterationSink =
-    std::function<void(const IterationRecord&, std::shared_ptr<const MeshState>)>;
+using IterationSink = std::function<void(const IterationRecord&, std::shared_ptr<const MeshState>)>;
 
 /// The main loop: first mesh, then metric -> adapt -> record until layers and nodes settle.
 /// Cancel after the first mesh exists returns an Outcome with `cancelled` set; before, an Error.

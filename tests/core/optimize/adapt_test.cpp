@@ -141,6 +141,16 @@ TEST(Adapt, GivesTheSameMeshTwice) {
   EXPECT_EQ(a.mesh.points, b.mesh.points);
 }
 
+TEST(Adapt, AnotherSeedGivesAnotherMeshAsGood) {
+  const auto f = constant<3>({0.1, 0.3, 0.3});
+  AdaptParams params;
+  params.seed = 7;
+  const auto a = rounds<3>(unit_box<3>(3), f, 2), b = rounds<3>(unit_box<3>(3), f, 2, params);
+  EXPECT_NE(a.mesh.points, b.mesh.points);
+  EXPECT_TRUE(validate(b.mesh).ok());
+  EXPECT_GT(share_of_unit_edges<3>(b.mesh, f), 0.85);
+}
+
 TEST(Adapt, EveryMetricMeanReachesTheSameSizes) {
   const MetricFunction<2> f = [](const Vec<2>& x) {
     const double h = 0.02 + 0.3 * std::abs(x[0] - 0.5);
