@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/mesh/quality.h"
 #include "core/optimize/star_optimizer.h"
+#include "core/optimize/tun.h"
 
 namespace lamella {
 namespace {
@@ -16,27 +17,42 @@ struct Stage {
   SweepParams sweep;
   int rounds;      ///< upper bound
   double settled;  ///< ends when operations fall below this share of the nodes
+  bool count_moves = true;  ///< among the operations
 };
 
 /// First the sizes with the shape relaxed, since min(shape, size) can freeze where every operation
-/// must pass through worse shapes; then the elements on average; then the worst of them.
+/// must pass through worse shapes; then the elements on average, first with reconnections that cost
+/// a little energy at random, which lets defects of the mesh wander and meet (simulated annealing);
+/// then the worst elements.
 template <int D>
 std::vector<Stage> stages(const AdaptParams& params) {
   Stage sizes, average, worst;
   sizes.sweep.relaxation = params.relaxation;
-  sizes.rounds = params.relaxed_sweeps;
-  sizes.settled = 0.02;
+  sizes.sweep.good_enough = D == 4 ? TUN("GOOD0", 0.7) : TUN("GOOD0", 0.5);
+  sizes.rounds = TUN("R0", 8);
+  sizes.settled = TUN("S0", 0.4);
+  sizes.count_moves = false;
   average.sweep.criterion = Criterion::energy;
-  average.sweep.split_above = 1.3;
-  average.sweep.collapse_below = 0.8;
-  average.sweep.good_enough = 0.8;
+  average.sweep.split_above = TUN("SPLIT", 1.3);
+  average.sweep.collapse_below = TUN("COLL", 0.8);
+  average.sweep.good_enough = D == 2 ? 1.1 : D == 4 ? TUN("GOOD4", 0.8) : TUN("GOOD", 0.6);
   average.rounds = params.sweeps;
-  average.settled = 0.01;
+  average.settled = D == 4 ? TUN("SETTLE4", 0.2) : TUN("SETTLE", 0.6);
+  std::vector<Stage> all{sizes};
+  double T = TUN("T0", D == 2 ? 0.35 : 0.6);
+  for (int i = 0; i < (D == 2 ? TUN("TN", 10) : TUN("TN", 3)); ++i, T *= D == 2 ? 0.9 : TUN("TF", 0.7)) {
+    Stage hot = average;
+    hot.sweep.temperature = T;
+    hot.rounds = 1;
+    all.push_back(hot);
+  }
+  all.push_back(average);
   worst.sweep.attention = 0.45;
   worst.sweep.good_enough = 0.45;
   worst.rounds = 3;
   worst.settled = 0.0001;
-  return {sizes, average, worst};
+  all.push_back(worst);
+  return all;
 }
 
 template <int D>
@@ -190,13 +206,19 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
   int rounds = 0;
   for (const Stage& stage : all) rounds += stage.rounds;
   int past = 0;
-  for (const Stage& stage : all) {
+  for (Stage stage : all) {
     adaption.wake_all();
+    if (report.sweeps > 0 && D == 3 && static_cast<double>(report.splits) < 0.1 * adaption.node_count()) {
+      if (stage.sweep.criterion == Criterion::energy) stage.sweep.good_enough = TUN("PGOOD", 0.8);
+      if (stage.settled > 0.2) stage.settled = TUN("PSET", 0.2);
+    }
     for (int i = 0; i < stage.rounds && !progress.cancelled(); ++i) {
       const double begin = static_cast<double>(past + i) / rounds;
-      const std::size_t done = adaption.round(
-          stage.sweep, progress.portion(begin, begin + 1.0 / rounds, "adapting"));
-      if (getenv("VERBOSE")) fprintf(stderr, "  stage %d round %d ops %zu nodes %zu [s %zu c %zu w %zu m %zu]\n", (int)(&stage-&all[0]), i, done, adaption.node_count(), report.splits, report.collapses, report.swaps, report.moves);
+      const std::size_t moves = report.moves;
+      std::size_t done = adaption.round(stage.sweep,
+                                        progress.portion(begin, begin + 1.0 / rounds, "adapting"));
+      if (!stage.count_moves) done -= report.moves - moves;
+      if (getenv("VERBOSE")) fprintf(stderr, "  %.2f stage %d round %d ops %zu nodes %zu [s %zu c %zu w %zu m %zu]\n", (double)clock()/CLOCKS_PER_SEC, report.sweeps, i, done, adaption.node_count(), report.splits, report.collapses, report.swaps, report.moves);
       if (static_cast<double>(done) < stage.settled * static_cast<double>(adaption.node_count()))
         break;
     }

@@ -1,4 +1,5 @@
 #include "core/optimize/star_optimizer.h"
+#include "core/optimize/tun.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,14 +10,15 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Squared metric distance within which a moved node keeps the metric carried to it instead of
 /// asking the function again.
+template <int D> inline double tun_e0() { static const double v = tun("E0", D == 2 ? 1.02 : D == 3 ? 1.2 : 1.4); return v; }
 constexpr double still_near = 0.0025;
 /// Energy of a typical element of a good mesh: what an additional element must be worth.
 template <int D>
-constexpr double typical_energy = D == 2 ? 1.05 : D == 3 ? 1.25 : 1.7;
+constexpr double typical_energy = D == 2 ? 1.02 : D == 3 ? 1.2 : 1.4;
 /// Quality below which no element may fall for the sake of the average.
-constexpr double floor_quality = 0.3;
+const double floor_quality = tun("FLOOR", 0.3);
 /// Gain of energy that is worth a reconnection.
-constexpr double least_gain = 1e-3;
+const double least_gain = tun("GAIN", 1e-3);
 /// c(T) below which a node may join any of its neighbors.
 constexpr double poor_quality = 0.3;
 
@@ -54,6 +56,7 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
   }
   kernel_.element_mean = params.element_mean;
   kernel_.size_average = params.size_average;
+  kernel_.size_weight = D == 2 ? TUN("W", 1.2) : TUN("W", 0.7);
   kernel_.points = &topo_.points;
   rating_.resize(topo_.elements.size());
   kernel_.relaxation = 0;
@@ -90,7 +93,7 @@ std::size_t StarOptimizer<D>::sweep(const SweepParams& params, const Progress& p
     if ((turn & 15) == 0 && progress.cancelled()) return operations;
     if (topo_.around.empty(s)) continue;
     bool stale = true;
-    for (auto e : topo_.around.of(s)) stale = stale && topo_.birth[e] <= done_[s];
+    for (auto e : topo_.around.of(s)) stale = stale && topo_.touch[e] <= done_[s];
     if (stale) continue;
     const std::uint32_t before = done_[s];
     done_[s] = topo_.clock++;
@@ -131,11 +134,23 @@ std::size_t StarOptimizer<D>::improve_edges(NodeId s, std::uint32_t before) {
         worst = std::min(worst, rating_[e].quality);
       }
     if (!fresh) continue;
-    const bool is_long = length2(s, n) > split2;
+    const double l2 = length2(s, n);
+    const bool is_long = l2 > split2 && longest(s, n, l2 / (TUN("LONG", 0.8) * TUN("LONG", 0.8)));
     if (!is_long && worst > sweep_.good_enough) continue;
     if (process_edge(s, n, is_long)) ++operations;
   }
   return operations;
+}
+
+/// Whether no edge from either end to a node around the edge has a squared length above `limit2`:
+/// the longest edges are split first.
+template <int D>
+bool StarOptimizer<D>::longest(NodeId s, NodeId n, double limit2) const {
+  for (auto e : star_)
+    for (NodeId v : topo_.elements[e])
+      if (v != 0 && v != s && v != n && (length2(s, v) > limit2 || length2(n, v) > limit2))
+        return false;
+  return true;
 }
 
 template <int D>
@@ -178,10 +193,15 @@ void StarOptimizer<D>::start_from_current() {
     if (!topo_.is_virtual(e)) {
       best_.push_back(rating_[e].quality);
       best_worst_ = std::min(best_worst_, rating_[e].quality);
-      best_cost_ += rating_[e].energy - typical_energy<D>;
+      best_cost_ += rating_[e].energy - tun_e0<D>();
     }
   cavity_worst_ = best_worst_;
   found_ = false;
+  if (sweep_.temperature > 0) {
+    dice_ = dice_ * 6364136223846793005u + 1442695040888963407u;
+    const double u = (static_cast<double>(dice_ >> 11) + 1) * 0x1p-53;
+    best_cost_ -= sweep_.temperature * std::log(u);
+  }
 }
 
 /// Whether the star of the apex goes before the best known; its figures are in trial_ then.
@@ -194,7 +214,7 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
     const double floor = std::min(cavity_worst_, floor_quality);
     // What is still to come costs at least 1 - typical each.
     const double limit = best_cost_ - least_gain +
-                         (typical_energy<D> - 1) * static_cast<double>(faces_.size());
+                         (tun_e0<D>() - 1) * static_cast<double>(faces_.size());
     double sum = 0;
     std::size_t count = 0;
     for (const auto& f : faces_) {
@@ -206,7 +226,7 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
       if (sum > limit) return false;
       ++count;
     }
-    trial_cost_ = sum + (1 - typical_energy<D>) * static_cast<double>(count);
+    trial_cost_ = sum + (1 - tun_e0<D>()) * static_cast<double>(count);
     return trial_cost_ < best_cost_ - least_gain;
   }
   for (const auto& f : faces_) {
@@ -310,7 +330,7 @@ bool StarOptimizer<D>::process_node(NodeId s) {
     for (const auto& r : ring_) join(r.node);
   }
   const bool joins = found_;
-  if (!joins || sweep_.criterion == Criterion::order) offer_moves(s, site);
+  if ((!joins || sweep_.criterion == Criterion::order) && (sweep_.relaxation == 1 || TUN("M0", 1))) offer_moves(s, site);
   if (!found_) return false;
   replace_cavity(best_apex_, best_apex_.node == 0 ? s : 0);
   release_if_unused(s);
@@ -333,11 +353,15 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n, bool is_long) {
       if (on_boundary) offer(existing(v), site);
     }
   }
-  if (is_long || sweep_.criterion == Criterion::order) {
+  if (is_long || (sweep_.criterion == Criterion::order && !TUN("GATE", 1))) {
     const Vec<D> e = topo_.points[n] - topo_.points[s];
     const double ls = std::sqrt(metric_[s].quad(e)), ln = std::sqrt(metric_[n].quad(e));
     // The metric length of a linear size field is halved here.
-    const double t = std::clamp(1 / (1 + std::sqrt(ls / ln)), 0.2, 0.8);
+    // An edge that will end in an odd number of pieces is cut at one of their ends.
+    const double pieces = std::round(std::sqrt(ls * ln));
+    const double half = pieces > 2 && pieces < 8 ? std::floor(0.5 * pieces) / pieces : 0.5;
+    const double ratio = std::sqrt(ls / ln) * (1 - half) / half;
+    const double t = std::clamp(1 / (1 + ratio), 0.2, 0.8);
     Vec<D> x = topo_.points[s] + t * e;
     if (site.boundary) {
       const auto on = point_on_boundary(x, site.on_feature, 2 * model_.tolerance());
@@ -381,6 +405,7 @@ template <int D>
 void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
   Apex apex = offered;
   NodeId v = apex.node;
+  bool far = false;
   if (v == 0) {
     v = moved;
     if (v == 0) {
@@ -397,13 +422,16 @@ void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
         asked_[v] = apex.point;
       }
     }
+    far = apex.metric.quad(apex.point - topo_.points[v]) > TUN("FAR2", 0.01);
     topo_.points[v] = apex.point;
     metric_[v] = apex.metric;
     carried_known_[v] = 0;
     if (!plain_) own_averaged_[v] = apex.averaged;
   }
   if (moved != 0) {
-    for (auto e : cavity_) topo_.birth[e] = topo_.clock;
+    for (auto e : cavity_) topo_.touch[e] = topo_.clock;
+    if (far)
+      for (auto e : cavity_) topo_.birth[e] = topo_.clock;
     for (const auto& f : faces_) rating_[f.element] = kernel_(f, apex.point, apex.averaged);
     for (std::size_t i = 0; i < virtual_faces_.size(); ++i)
       topo_.label[virtual_faces_[i].element] = best_retag_[i];
@@ -453,7 +481,7 @@ Block<D> StarOptimizer<D>::take() {
     mesh.fixed.push_back(fixed_[i]);
     const std::uint32_t seen = locked(n) ? (dirty_[i] ? 0 : 1) : done_[i];
     bool dirty = false;
-    for (auto e : topo_.around.of(n)) dirty = dirty || topo_.birth[e] > seen;
+    for (auto e : topo_.around.of(n)) dirty = dirty || topo_.touch[e] > seen;
     mesh.dirty.push_back(dirty);
     out.shared.push_back(shared_[i]);
   }

@@ -24,6 +24,7 @@ struct SweepParams {
   double split_above = 1.41;  ///< metric length above which an edge may get a node
   double collapse_below = 0.71;  ///< metric length below which a node may join its neighbor
   double good_enough = 0.7;  ///< c(T) above which elements are not reconnected
+  double temperature = 0;    ///< energy that a reconnection may cost, at random
   double attention = 2;      ///< c(T) above which nodes are left alone altogether
 };
 
@@ -86,6 +87,7 @@ class StarOptimizer {
     const Vec<D> e = topo_.points[b] - topo_.points[a];
     return std::sqrt(metric_[a].quad(e) * metric_[b].quad(e));
   }
+  bool longest(NodeId s, NodeId n, double limit2) const;
   Rating rating_of(std::int32_t e) const;
   void grow_nodes();
   void release_if_unused(NodeId n);
@@ -140,6 +142,7 @@ class StarOptimizer {
   double cavity_worst_ = 0;
   Apex best_apex_;
   bool found_ = false;
+  std::uint64_t dice_ = 0;
   struct Birth {
     Element nodes;
     std::int32_t label;

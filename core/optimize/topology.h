@@ -99,7 +99,8 @@ struct Topology {
   std::vector<Vec<D>> points;
   std::vector<Element> elements;     ///< dead ones have elements[e][1] == 0
   std::vector<std::int32_t> label;   ///< [element]
-  std::vector<std::uint32_t> birth;  ///< [element] clock at creation
+  std::vector<std::uint32_t> birth;  ///< [element] clock at creation, or when a node moved far
+  std::vector<std::uint32_t> touch;  ///< [element] clock when it was born or a node moved
   std::vector<std::int32_t> free_elements;
   std::vector<NodeId> free_nodes;
   NodeElements around;  ///< no list for node 0
@@ -112,6 +113,7 @@ struct Topology {
     t.elements = std::move(elements);
     t.label = std::move(label);
     t.birth.assign(t.elements.size(), t.clock);
+    t.touch = t.birth;
     t.around.fill(t.points.size(), t.elements);
     return t;
   }
@@ -142,12 +144,13 @@ struct Topology {
       free_elements.pop_back();
       elements[e] = nodes;
       label[e] = element_label;
-      birth[e] = clock;
+      birth[e] = touch[e] = clock;
     } else {
       e = static_cast<std::int32_t>(elements.size());
       elements.push_back(nodes);
       label.push_back(element_label);
       birth.push_back(clock);
+      touch.push_back(clock);
     }
     for (NodeId n : nodes)
       if (n != 0) around.add(n, e);
