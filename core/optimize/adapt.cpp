@@ -7,7 +7,6 @@
 #include "core/base/parallel.h"
 #include "core/mesh/quality.h"
 #include "core/optimize/star_optimizer.h"
-#include "core/optimize/tun.h"
 
 namespace lamella {
 namespace {
@@ -26,33 +25,47 @@ struct Stage {
 /// then the worst elements.
 template <int D>
 std::vector<Stage> stages(const AdaptParams& params) {
-  Stage sizes, average, worst;
+  std::vector<Stage> all;
+  Stage sizes;
   sizes.sweep.relaxation = params.relaxation;
-  sizes.sweep.good_enough = D == 4 ? TUN("GOOD0", 0.7) : TUN("GOOD0", 0.5);
-  sizes.rounds = TUN("R0", 8);
-  sizes.settled = TUN("S0", 0.4);
+  sizes.sweep.good_enough = D == 4 ? 0.7 : 0.5;
+  // In 4D too many of these leave elements that nothing mends afterwards.
+  sizes.rounds = D == 4 ? std::min(3, params.relaxed_sweeps) : params.relaxed_sweeps;
+  sizes.settled = 0.4;
   sizes.count_moves = false;
+  all.push_back(sizes);
+
+  Stage average;
   average.sweep.criterion = Criterion::energy;
-  average.sweep.split_above = TUN("SPLIT", 1.3);
-  average.sweep.collapse_below = TUN("COLL", 0.8);
-  average.sweep.good_enough = D == 2 ? 1.1 : D == 4 ? TUN("GOOD4", 0.8) : TUN("GOOD", 0.6);
+  average.sweep.split_above = 1.3;
+  average.sweep.collapse_below = 0.8;
+  average.sweep.good_enough = D == 2 ? 1 : D == 4 ? 0.8 : 0.6;
   average.rounds = params.sweeps;
-  average.settled = D == 4 ? TUN("SETTLE4", 0.2) : TUN("SETTLE", 0.6);
-  std::vector<Stage> all{sizes};
-  double T = TUN("T0", D == 2 ? 0.35 : 0.6);
-  for (int i = 0; i < (D == 2 ? TUN("TN", 10) : TUN("TN", 3)); ++i, T *= D == 2 ? 0.9 : TUN("TF", 0.7)) {
-    Stage hot = average;
-    hot.sweep.temperature = T;
-    hot.rounds = 1;
+  average.settled = D == 4 ? 0.2 : 0.6;
+  Stage hot = average;
+  hot.rounds = 1;
+  hot.sweep.temperature = D == 2 ? 0.35 : 0.6;
+  for (int i = 0; i < (D == 2 ? 10 : 3); ++i) {
     all.push_back(hot);
+    hot.sweep.temperature *= D == 2 ? 0.9 : 0.7;
   }
   all.push_back(average);
+
+  Stage worst;
   worst.sweep.attention = 0.45;
   worst.sweep.good_enough = 0.45;
   worst.rounds = 3;
-  worst.settled = 0.0001;
+  worst.settled = 1e-4;
   all.push_back(worst);
   return all;
+}
+
+/// A mesh that has its sizes already is there to be polished: more patience.
+template <int D>
+void polish(Stage& stage) {
+  if (D != 3 || stage.sweep.criterion != Criterion::energy) return;
+  stage.sweep.good_enough = 0.8;
+  stage.settled = 0.2;
 }
 
 template <int D>
@@ -208,17 +221,14 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
   int past = 0;
   for (Stage stage : all) {
     adaption.wake_all();
-    if (report.sweeps > 0 && D == 3 && static_cast<double>(report.splits) < 0.1 * adaption.node_count()) {
-      if (stage.sweep.criterion == Criterion::energy) stage.sweep.good_enough = TUN("PGOOD", 0.8);
-      if (stage.settled > 0.2) stage.settled = TUN("PSET", 0.2);
-    }
+    if (static_cast<double>(report.splits) < 0.1 * static_cast<double>(adaption.node_count()))
+      polish<D>(stage);
     for (int i = 0; i < stage.rounds && !progress.cancelled(); ++i) {
       const double begin = static_cast<double>(past + i) / rounds;
       const std::size_t moves = report.moves;
       std::size_t done = adaption.round(stage.sweep,
                                         progress.portion(begin, begin + 1.0 / rounds, "adapting"));
       if (!stage.count_moves) done -= report.moves - moves;
-      if (getenv("VERBOSE")) fprintf(stderr, "  %.2f stage %d round %d ops %zu nodes %zu [s %zu c %zu w %zu m %zu]\n", (double)clock()/CLOCKS_PER_SEC, report.sweeps, i, done, adaption.node_count(), report.splits, report.collapses, report.swaps, report.moves);
       if (static_cast<double>(done) < stage.settled * static_cast<double>(adaption.node_count()))
         break;
     }

@@ -31,9 +31,9 @@ struct AdaptParams {
   std::optional<double> chord_tolerance{};  ///< mm; unset: 1e-3 of the box diagonal
   double feature_angle = 0.7;  ///< radians between facets that makes an edge a feature, where no
                                ///< reference surface tells
-  int sweeps = 24;             ///< upper bound; the work set empties before
+  int sweeps = 24;             ///< upper bound of the sweeps for the average quality
   double relaxation = 3;       ///< weight of the shape in the first sweeps, >= 1; 1: none
-  int relaxed_sweeps = 3;      ///< upper bound of the relaxed sweeps
+  int relaxed_sweeps = 8;      ///< upper bound of the relaxed sweeps
   int threads = 0;             ///< 0: all cores; the mesh does not depend on it
   std::optional<double> memory_limit{};  ///< MB the adaption may take; unset: no limit
   bool treat_blocking = false;  ///< split inner edges and elements that join wall to wall (C.1.1)

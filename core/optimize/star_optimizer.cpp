@@ -1,5 +1,4 @@
 #include "core/optimize/star_optimizer.h"
-#include "core/optimize/tun.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,15 +9,18 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Squared metric distance within which a moved node keeps the metric carried to it instead of
 /// asking the function again.
-template <int D> inline double tun_e0() { static const double v = tun("E0", D == 2 ? 1.02 : D == 3 ? 1.2 : 1.4); return v; }
 constexpr double still_near = 0.0025;
 /// Energy of a typical element of a good mesh: what an additional element must be worth.
 template <int D>
 constexpr double typical_energy = D == 2 ? 1.02 : D == 3 ? 1.2 : 1.4;
+/// Squared metric length of a move that makes the edges around worth another look.
+constexpr double far_move2 = 0.01;
+/// Of the longest edge around: an edge that is shorter waits for that one to be split.
+constexpr double nearly_longest = 0.8;
 /// Quality below which no element may fall for the sake of the average.
-const double floor_quality = tun("FLOOR", 0.3);
+constexpr double floor_quality = 0.3;
 /// Gain of energy that is worth a reconnection.
-const double least_gain = tun("GAIN", 1e-3);
+constexpr double least_gain = 1e-3;
 /// c(T) below which a node may join any of its neighbors.
 constexpr double poor_quality = 0.3;
 
@@ -56,7 +58,7 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
   }
   kernel_.element_mean = params.element_mean;
   kernel_.size_average = params.size_average;
-  kernel_.size_weight = D == 2 ? TUN("W", 1.2) : TUN("W", 0.7);
+  kernel_.size_weight = D == 2 ? 1.2 : 0.7;
   kernel_.points = &topo_.points;
   rating_.resize(topo_.elements.size());
   kernel_.relaxation = 0;
@@ -135,7 +137,7 @@ std::size_t StarOptimizer<D>::improve_edges(NodeId s, std::uint32_t before) {
       }
     if (!fresh) continue;
     const double l2 = length2(s, n);
-    const bool is_long = l2 > split2 && longest(s, n, l2 / (TUN("LONG", 0.8) * TUN("LONG", 0.8)));
+    const bool is_long = l2 > split2 && longest(s, n, l2 / (nearly_longest * nearly_longest));
     if (!is_long && worst > sweep_.good_enough) continue;
     if (process_edge(s, n, is_long)) ++operations;
   }
@@ -193,7 +195,7 @@ void StarOptimizer<D>::start_from_current() {
     if (!topo_.is_virtual(e)) {
       best_.push_back(rating_[e].quality);
       best_worst_ = std::min(best_worst_, rating_[e].quality);
-      best_cost_ += rating_[e].energy - tun_e0<D>();
+      best_cost_ += rating_[e].energy - typical_energy<D>;
     }
   cavity_worst_ = best_worst_;
   found_ = false;
@@ -214,7 +216,7 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
     const double floor = std::min(cavity_worst_, floor_quality);
     // What is still to come costs at least 1 - typical each.
     const double limit = best_cost_ - least_gain +
-                         (tun_e0<D>() - 1) * static_cast<double>(faces_.size());
+                         (typical_energy<D> - 1) * static_cast<double>(faces_.size());
     double sum = 0;
     std::size_t count = 0;
     for (const auto& f : faces_) {
@@ -226,7 +228,7 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
       if (sum > limit) return false;
       ++count;
     }
-    trial_cost_ = sum + (1 - tun_e0<D>()) * static_cast<double>(count);
+    trial_cost_ = sum + (1 - typical_energy<D>) * static_cast<double>(count);
     return trial_cost_ < best_cost_ - least_gain;
   }
   for (const auto& f : faces_) {
@@ -330,7 +332,7 @@ bool StarOptimizer<D>::process_node(NodeId s) {
     for (const auto& r : ring_) join(r.node);
   }
   const bool joins = found_;
-  if ((!joins || sweep_.criterion == Criterion::order) && (sweep_.relaxation == 1 || TUN("M0", 1))) offer_moves(s, site);
+  if (!joins || sweep_.criterion == Criterion::order) offer_moves(s, site);
   if (!found_) return false;
   replace_cavity(best_apex_, best_apex_.node == 0 ? s : 0);
   release_if_unused(s);
@@ -353,7 +355,7 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n, bool is_long) {
       if (on_boundary) offer(existing(v), site);
     }
   }
-  if (is_long || (sweep_.criterion == Criterion::order && !TUN("GATE", 1))) {
+  if (is_long) {
     const Vec<D> e = topo_.points[n] - topo_.points[s];
     const double ls = std::sqrt(metric_[s].quad(e)), ln = std::sqrt(metric_[n].quad(e));
     // The metric length of a linear size field is halved here.
@@ -422,7 +424,7 @@ void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
         asked_[v] = apex.point;
       }
     }
-    far = apex.metric.quad(apex.point - topo_.points[v]) > TUN("FAR2", 0.01);
+    far = apex.metric.quad(apex.point - topo_.points[v]) > far_move2;
     topo_.points[v] = apex.point;
     metric_[v] = apex.metric;
     carried_known_[v] = 0;

@@ -1,13 +1,12 @@
 #include <algorithm>
 
 #include "core/optimize/star_optimizer.h"
-#include "core/optimize/tun.h"
 
 namespace lamella {
 namespace {
 
 /// Squared metric length of a move that is not worth making.
-const double idle_move2 = tun("IDLE2", 1e-4);
+constexpr double idle_move2 = 1e-4;
 /// Squared metric length of a move over which the node's own metric still holds.
 constexpr double short_move2 = 0.01;
 

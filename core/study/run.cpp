@@ -79,12 +79,14 @@ class BodyLoop {
                                         kMinGuardShare * outcome_.chord_tolerance,
                                         kMaxGuardShare * outcome_.chord_tolerance);
     params.seed = options_.seed;
+    params.threads = options_.threads;
     // Asked at every accepted point, the detector keeps walls from blurring into their neighbors:
     // two rounds reach what the nodal field does not in six.
     const auto natural = [this](const Vec<3>& x) { return detector_->at(x, natural_).metric; };
     Result<Adapted<3>> adapted = adapt<3>(current_.mesh, current_.metric, &part_.surface, params,
                                           progress.portion(0, 0.8), natural);
     if (!adapted) return give_up(adapted.error());
+    if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return give_up(valid.error());
     return accept(std::move(adapted->mesh), start, progress.portion(0.8, 1));
   }
