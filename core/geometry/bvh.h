@@ -27,6 +27,7 @@ struct Box {
     const Vec<D> e = (hi - lo).cwiseMax(0.0);
     if constexpr (D == 2) return e[0] + e[1];
     if constexpr (D == 3) return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
+    if constexpr (D == 4) return e[0] * e[1] * (e[2] + e[3]) + e[2] * e[3] * (e[0] + e[1]);
   }
 };
 
