@@ -73,7 +73,7 @@ struct ElementLocator<D>::Impl {
   typename Bvh<D>::Ref element_root, boundary_root;
   double reach2 = 0;  ///< mm^2 around a box that still counts as in it
 
-  explicit Impl(const SimplexMesh<D>& mesh)
+  Impl(const SimplexMesh<D>& mesh, const Progress& progress)
       : points(mesh.points),
         elements(mesh.elements),
         boundary(boundary_faces<D>(mesh.elements, mesh.points.size())) {
@@ -83,19 +83,23 @@ struct ElementLocator<D>::Impl {
     const Vec<D> center = 0.5 * (all.lo + all.hi);
     element_tree = Bvh<D>(center);
     boundary_tree = Bvh<D>(center);
-    element_root = plant(element_tree, elements.size(), [&](std::size_t i) { return elements[i]; });
-    boundary_root =
-        plant(boundary_tree, boundary.size(), [&](std::size_t i) { return boundary[i].facet; });
+    element_root = plant(
+        element_tree, elements.size(), [&](std::size_t i) { return elements[i]; }, progress);
+    progress.report(0.9);
+    boundary_root = plant(
+        boundary_tree, boundary.size(), [&](std::size_t i) { return boundary[i].facet; }, progress);
+    progress.report(1);
   }
 
   template <class Nodes>
-  typename Bvh<D>::Ref plant(Bvh<D>& tree, std::size_t count, Nodes nodes) const {
+  typename Bvh<D>::Ref plant(Bvh<D>& tree, std::size_t count, Nodes nodes,
+                             const Progress& progress) const {
     std::vector<Box<D>> boxes(count);
     for (std::size_t i = 0; i < count; ++i)
       for (const NodeId n : nodes(i)) boxes[i].add(points[n]);
     std::vector<std::int32_t> items(count);
     std::iota(items.begin(), items.end(), 0);
-    return tree.build(boxes, items);
+    return tree.build(boxes, items, progress);
   }
 
   template <std::size_t N>
@@ -153,8 +157,8 @@ struct ElementLocator<D>::Impl {
 };
 
 template <int D>
-ElementLocator<D>::ElementLocator(const SimplexMesh<D>& mesh)
-    : impl_(std::make_unique<Impl>(mesh)) {}
+ElementLocator<D>::ElementLocator(const SimplexMesh<D>& mesh, const Progress& progress)
+    : impl_(std::make_unique<Impl>(mesh, progress)) {}
 template <int D>
 ElementLocator<D>::~ElementLocator() = default;
 template <int D>

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/base/progress.h"
 #include "core/mesh/simplex_mesh.h"
 
 namespace lamella {
@@ -22,8 +23,9 @@ struct Located {
 template <int D>
 class ElementLocator {
  public:
-  /// The mesh must have at least one element; the list of facets is not used.
-  explicit ElementLocator(const SimplexMesh<D>& mesh);
+  /// The mesh must have at least one element; the list of facets is not used. A cancelled locator
+  /// lacks elements: ask `progress` before it is used.
+  explicit ElementLocator(const SimplexMesh<D>& mesh, const Progress& progress = {});
   ~ElementLocator();
   ElementLocator(ElementLocator&&) noexcept;
 

@@ -55,7 +55,8 @@ Result<MetricFunction<D>> background_metric(const SimplexMesh<D>& mesh,
       }))
     return cancelled_error();
   auto background = std::make_shared<const Background<D>>(
-      Background<D>{mesh.elements, std::move(carried), carrier, ElementLocator<D>(mesh)});
+      Background<D>{mesh.elements, std::move(carried), carrier,
+                    ElementLocator<D>(mesh, progress.portion(0.2, 1))});
   if (progress.cancelled()) return cancelled_error();
   progress.report(1);
   return MetricFunction<D>([background](const Vec<D>& x) { return background->at(x); });
