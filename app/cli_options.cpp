@@ -99,10 +99,9 @@ void add_adapt(CLI::App* a, AdaptCommand& adapt) {
                     "Analytic metric NAME or NAME:key=value,..: " + joined(metric_names()))
           ->option_text("NAME");
   sol->excludes(metric);
-  a->add_flag(
-       "--background", adapt.background,
-       "Keep the metric of --sol on the first mesh and look it up there, instead of carrying "
-       "it from node to node")
+  a->add_flag("--background,!--no-background", adapt.background,
+              "Keep the metric of --sol on the first mesh and look it up there, or carry it from "
+              "node to node, which blurs it [--background]")
       ->needs(sol);
   const auto means = CLI::IsMember({"m", "root", "size", "log", "h"});
   a->add_option(

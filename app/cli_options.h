@@ -26,7 +26,7 @@ struct MeshCommand {
 
 struct AdaptCommand {
   std::string mesh, output, sol, metric;
-  bool background = false;
+  bool background = true;
   std::string mean = "size", element_mean = "m", size_average = "l2";
   std::optional<double> h_min, h_max, max_anisotropy, gradation, elements;
   std::string gradation_kind = "intersection";

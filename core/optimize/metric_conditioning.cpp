@@ -342,12 +342,13 @@ class Conditioner {
                          });
   }
 
-  /// Repeats update(n), which says whether node n changed and writes its new value aside, until no
-  /// node changes; `accept(n)` makes the value of a changed node the one that others see. Nodes
-  /// without a neighbor that changed are left out.
+  /// Repeats update(n, moved), which says whether node n changed and writes its new value aside,
+  /// until no node changes; `accept(n)` makes the value of a changed node the one that others see.
+  /// Only neighbors with moved[p], those of the sweep before, can ask for more than they have
+  /// asked: metrics only get finer.
   template <class Update, class Accept>
   bool sweep(int& sweeps, bool& settled, const Progress& progress, Update update, Accept accept) {
-    std::vector<char> moved(metric_.size(), 1);
+    std::vector<char> moved(metric_.size(), 1), now(metric_.size(), 0), next;
     changed_.assign(metric_.size(), 0);
     std::vector<NodeId> work(metric_.size() - 1);
     for (std::size_t i = 0; i < work.size(); ++i) work[i] = static_cast<NodeId>(i + 1);
@@ -356,14 +357,15 @@ class Conditioner {
       const Progress here =
           progress.portion(sweeps / (sweeps + 10.0), (sweeps + 1) / (sweeps + 11.0));
       if (!parallel_each(work.size(), params_.threads, here,
-                         [&](std::size_t i) { moved[work[i]] = update(work[i]); }))
+                         [&](std::size_t i) { now[work[i]] = update(work[i], moved); }))
         return false;
-      std::vector<char> next(metric_.size(), 0);
+      moved.assign(metric_.size(), 0);
+      next.assign(metric_.size(), 0);
       settled = true;
       for (const NodeId n : work) {
-        if (!moved[n]) continue;
+        if (!now[n]) continue;
         settled = false;
-        changed_[n] = 1;
+        changed_[n] = moved[n] = 1;
         accept(n);
         for (std::size_t k = neighbors_.start[n]; k < neighbors_.start[n + 1]; ++k)
           next[neighbors_.node[k]] = 1;
@@ -378,10 +380,11 @@ class Conditioner {
   bool grade_by_factors(int& sweeps, bool& settled, const Progress& progress) {
     const double slope = std::log(*params_.gradation);
     std::vector<double> factor(metric_.size(), 1), next = factor;
-    const auto update = [&](NodeId q) {
+    const auto update = [&](NodeId q, const std::vector<char>& moved) {
       double s = factor[q];
       for (std::size_t k = neighbors_.start[q]; k < neighbors_.start[q + 1]; ++k) {
         const NodeId p = neighbors_.node[k];
+        if (!moved[p]) continue;
         const Vec<D> e = mesh_.points[q] - mesh_.points[p];
         // |e| / h(e) is the metric length, of which the factor is divided.
         s = std::min(s, metric_length<D>(e, metric_[q]) *
@@ -402,20 +405,21 @@ class Conditioner {
     MetricField<D> next = metric_;
     ConditionParams cap;
     cap.max_anisotropy = params_.max_anisotropy;
-    const auto update = [&](NodeId q) {
+    const auto update = [&](NodeId q, const std::vector<char>& moved) {
       struct Violation {
-        double size;
+        double size;  // sum of the quotients of both forms along the axes that reduce them
         Metric<D> metric;
       };
       std::vector<Violation> found;
       const Metric<D>& own = metric_[q];
       for (std::size_t k = neighbors_.start[q]; k < neighbors_.start[q + 1]; ++k) {
         const NodeId p = neighbors_.node[k];
+        if (!moved[p]) continue;
         const Vec<D> e = mesh_.points[q] - mesh_.points[p];
         const double growth = 1 + slope * metric_length<D>(e, metric_[p]);
         const Metric<D> spread = metric_[p] / (growth * growth);
         if (covers(own, spread)) continue;
-        found.push_back({largest_quotient(own, spread), spread});
+        found.push_back({own.llt().solve(spread).trace(), spread});
       }
       if (found.empty()) return false;
       std::stable_sort(found.begin(), found.end(),
@@ -430,17 +434,18 @@ class Conditioner {
     return sweep(sweeps, settled, progress, update, [&](NodeId n) { metric_[n] = next[n]; });
   }
 
-  /// m >= spread as quadratic forms, up to the slack.
+  /// m >= spread as quadratic forms, up to the slack: the difference has positive pivots. A sweep
+  /// spends its time here, and Eigen's LLT takes several times as long at this size.
   static bool covers(const Metric<D>& m, const Metric<D>& spread) {
-    const Mat<D> rest = (1 + kSlack) * m - spread;
-    return rest.llt().info() == Eigen::Success;
-  }
-  /// The largest value of u^T b u / u^T a u.
-  static double largest_quotient(const Metric<D>& a, const Metric<D>& b) {
-    const Mat<D> l = a.llt().matrixL();
-    const Mat<D> half = l.template triangularView<Eigen::Lower>().solve(b);
-    const Mat<D> seen = l.template triangularView<Eigen::Lower>().solve(half.transpose());
-    return spectrum<D>(Mat<D>(0.5 * (seen + seen.transpose()))).values[D - 1];
+    Mat<D> rest = (1 + kSlack) * m - spread;
+    for (int k = 0; k < D; ++k) {
+      if (!(rest(k, k) > 0)) return false;
+      for (int i = k + 1; i < D; ++i) {
+        const double f = rest(i, k) / rest(k, k);
+        for (int j = i; j < D; ++j) rest(j, i) -= f * rest(j, k);
+      }
+    }
+    return true;
   }
 
   const SimplexMesh<D>& mesh_;

@@ -341,8 +341,11 @@ TEST_F(Cli, ABackgroundMetricIsNotBlurredFromPassToPass) {
   for (std::size_t n = 1; n < field.size(); ++n)
     field[n] = metric_from_sizes<2>(Mat<2>::Identity(), {size(mesh.points[n]), 0.2});
   ASSERT_TRUE(write_sol<2>(field, folder / "square.sol").ok());
-  ASSERT_EQ(run("adapt square.mesh --sol square.sol --background -o a.mesh --iterations 4"), 0)
-      << err;
+  ASSERT_EQ(run("adapt square.mesh --sol square.sol -o a.mesh --iterations 4"), 0) << err;
+  ASSERT_EQ(run("adapt square.mesh --sol square.sol --background -o b.mesh --iterations 4"), 0);
+  ASSERT_EQ(run("adapt square.mesh --sol square.sol --no-background -o c.mesh --iterations 4"), 0);
+  EXPECT_EQ(read_file(folder / "a.mesh").value(), read_file(folder / "b.mesh").value());
+  EXPECT_NE(read_file(folder / "a.mesh").value(), read_file(folder / "c.mesh").value());
   const auto adapted = read_medit<2>(folder / "a.mesh").value();
   const auto kept = read_sol<2>(folder / "a.sol", adapted.node_count()).value();
   // Sizes are linear between the nodes of the background, so they are met at any place.
