@@ -146,7 +146,7 @@ TEST(BackgroundMetric, LivesLongerThanTheMesh) {
 }
 
 TEST(BackgroundMetric, AdaptionUnderItReachesTheSizesOfTheAnalyticMetric) {
-  // The sheet of `linear` is thinner than the cells of the start by far; the background is fine.
+  // The layer is thinner than the cells of the start by far; the background is fine.
   const auto analytic = [](const Vec<2>& x) -> Metric<2> {
     const double h = 0.02 + 0.3 * std::abs(x[0] - 0.5);
     return Vec<2>(1 / (h * h), 25).asDiagonal();
