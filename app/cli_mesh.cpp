@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "app/cli_commands.h"
+#include "app/cli_common.h"
 #include "core/mesh/validate.h"
 #include "core/study/first_mesh.h"
 #include "core/study/join.h"
@@ -15,11 +15,6 @@ namespace lamella::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-std::string dump(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 bool is_study(const std::string& file) { return fs::path(file).extension() == ".json"; }
 

@@ -16,7 +16,7 @@ const std::map<std::string, double> kUnits = {{"mm", 1}, {"cm", 10}, {"m", 1000}
 const char* const kFooter = R"(
 Lengths are in mm, angles in radians. Exit status: 0 done, 1 error, 2 usage, 3 bad input,
 4 not converged (the mesh is written), 5 quality below the limit asked, 6 memory limit,
-130 cancelled (Ctrl-C; `mesh` writes the best mesh it has).
+130 cancelled (Ctrl-C; `mesh` and `adapt` write what they have).
 
 Examples:
   lamella-cli sample t_junction -o t.step
@@ -56,6 +56,95 @@ void add_chord(CLI::App* app, Value& value) {
 
 void add_json(CLI::App* app, bool& json) {
   app->add_flag("--json", json, "One JSON object a line on standard output");
+}
+
+void add_conditioning(CLI::App* a, AdaptCommand& adapt) {
+  a->add_option("--h-min", adapt.h_min, "Smallest size, mm [no bound]")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+  a->add_option("--h-max", adapt.h_max, "Largest size, mm [no bound]")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+  a->add_option("--max-anisotropy", adapt.max_anisotropy,
+                "Largest over smallest size at a node; large sizes shrink [no bound]")
+      ->option_text("X")
+      ->check(CLI::Range(1.0, 1e300));
+  auto* gradation = a->add_option("--gradation", adapt.gradation,
+                                  "Growth of sizes per unit length, above 1 [no bound]")
+                        ->option_text("X")
+                        ->check(CLI::PositiveNumber);
+  a->add_option("--gradation-kind", adapt.gradation_kind,
+                "The metric of a neighbor, grown, is intersected (intersection), or the metric is "
+                "scaled (isotropic) [intersection]")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"isotropic", "intersection"}))
+      ->needs(gradation);
+  a->add_option("--elements", adapt.elements,
+                "Scale the metric until it asks for so many elements, after all bounds")
+      ->option_text("N")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_adapt(CLI::App* a, AdaptCommand& adapt) {
+  a->add_option("MESH", adapt.mesh, "Medit .mesh (2D or 3D), .msh or .vtu")
+      ->option_text(" ")
+      ->required();
+  a->add_option("-o,--output", adapt.output, "File to write; a .mesh gets its metric as .sol")
+      ->option_text("FILE")
+      ->required();
+  auto* sol = a->add_option("--sol", adapt.sol, "Metric or size at the nodes (Medit .sol)")
+                  ->option_text("FILE");
+  auto* metric =
+      a->add_option("--metric", adapt.metric,
+                    "Analytic metric NAME or NAME:key=value,..: " + joined(metric_names()))
+          ->option_text("NAME");
+  sol->excludes(metric);
+  a->add_flag("--background,!--no-background", adapt.background,
+              "Keep the metric of --sol on the first mesh and look it up there, or carry it from "
+              "node to node, which blurs it [--background]")
+      ->needs(sol);
+  const auto means = CLI::IsMember({"m", "root", "size", "log", "h"});
+  a->add_option(
+       "--mean", adapt.mean,
+       "What is averaged where a metric is carried to a new place: M (m), its root (root), "
+       "M^(-1/2) (size), log M (log) or the smallest size (h) [size]")
+      ->option_text("NAME")
+      ->check(means);
+  a->add_option("--element-mean", adapt.element_mean, "The same for the metric of an element [m]")
+      ->option_text("NAME")
+      ->check(means);
+  a->add_option("--size-average", adapt.size_average,
+                "Size of an element from its edges: root of the mean square (l2) or mean (l1) [l2]")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"l2", "l1"}));
+  add_conditioning(a, adapt);
+  a->add_option("--freeze-group", adapt.freeze_groups,
+                "Leave the faces of this boundary group as they are; may be repeated")
+      ->option_text("NAME")
+      ->allow_extra_args(false);
+  a->add_option("--freeze-body", adapt.freeze_bodies,
+                "Leave the elements of this body as they are; may be repeated")
+      ->option_text("NAME")
+      ->allow_extra_args(false);
+  a->add_flag("--split-blocking", adapt.split_blocking,
+              "Open faces and edges inside whose nodes are all on the boundary");
+  a->add_option("--iterations", adapt.iterations, "Adaptions [3]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1000));
+  a->add_option("--sweeps", adapt.sweeps, "Sweeps of one adaption at most [24]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1000));
+  add_chord(a, adapt.chord_tolerance);
+  a->add_option("--threads", adapt.threads, "Threads; the mesh does not depend on it [all cores]")
+      ->option_text("N")
+      ->check(CLI::Range(0, 4096));
+  a->add_option("--memory", adapt.memory,
+                "Memory the adaption may take, MB; status 6 when more is needed [no limit]")
+      ->option_text("MB")
+      ->check(CLI::PositiveNumber);
+  a->add_option("--seed", adapt.seed, "Another seed gives another, equally good mesh [1]")
+      ->option_text("N");
+  add_json(a, adapt.json);
 }
 
 }  // namespace
@@ -123,26 +212,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
 
   AdaptCommand adapt;
   CLI::App* a = app.add_subcommand("adapt", "Adapt a mesh to a metric, in 2D or 3D");
-  a->add_option("MESH", adapt.mesh, "Medit .mesh (2D or 3D), .msh or .vtu")
-      ->option_text(" ")
-      ->required();
-  a->add_option("-o,--output", adapt.output, "File to write; a .mesh gets its metric as .sol")
-      ->option_text("FILE")
-      ->required();
-  auto* sol = a->add_option("--sol", adapt.sol, "Metric or size at the nodes (Medit .sol)")
-                  ->option_text("FILE");
-  auto* metric =
-      a->add_option("--metric", adapt.metric,
-                    "Analytic metric NAME or NAME:key=value,..: " + joined(metric_names()))
-          ->option_text("NAME");
-  sol->excludes(metric);
-  a->add_option("--iterations", adapt.iterations, "Adaptions [3]")
-      ->option_text("N")
-      ->check(CLI::Range(1, 1000));
-  add_chord(a, adapt.chord_tolerance);
-  a->add_option("--seed", adapt.seed, "Another seed gives another, equally good mesh [1]")
-      ->option_text("N");
-  add_json(a, adapt.json);
+  add_adapt(a, adapt);
 
   GenerateCommand generate;
   CLI::App* g = app.add_subcommand("generate", "Fill a closed surface with tetrahedra");

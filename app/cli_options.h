@@ -26,7 +26,15 @@ struct MeshCommand {
 
 struct AdaptCommand {
   std::string mesh, output, sol, metric;
+  bool background = true;
+  std::string mean = "size", element_mean = "m", size_average = "l2";
+  std::optional<double> h_min, h_max, max_anisotropy, gradation, elements;
+  std::string gradation_kind = "intersection";
+  std::vector<std::string> freeze_groups, freeze_bodies;
+  bool split_blocking = false;
   int iterations = 3;
+  std::optional<int> sweeps, threads;
+  std::optional<double> memory;  ///< MB
   std::optional<double> chord_tolerance;
   std::uint64_t seed = 1;
   bool json = false;

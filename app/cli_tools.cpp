@@ -1,17 +1,11 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "app/cli_commands.h"
+#include "app/cli_common.h"
 #include "core/cad/load_parts.h"
 #include "core/cad/sample_parts.h"
-#include "core/io/medit.h"
-#include "core/mesh/check.h"
-#include "core/mesh/quality.h"
-#include "core/metric/analytic.h"
 #include "core/natural/layers.h"
-#include "core/optimize/adapt.h"
 #include "core/study/measure.h"
 #include "core/study/study_file.h"
 
@@ -20,84 +14,6 @@ namespace lamella::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-std::string dump(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-/// Whatever keeps an input from being read, it is the input that is bad.
-Error of_input(Error error) {
-  if (error.code == Code::io) error.code = Code::bad_input;
-  return error;
-}
-
-Result<AnyMesh> read_any(const std::string& file, MetricField<3>* metric,
-                         const Progress& progress) {
-  if (fs::path(file).extension() == ".mesh") return read_medit(file, progress);
-  Result<MeshState> state = read_mesh(file, progress);
-  if (!state) return state.error();
-  if (metric) *metric = std::move(state->metric);
-  return AnyMesh(std::move(state->mesh));
-}
-
-/// The metric asked at the nodes: from a .sol file, analytic, or none (empty).
-template <int D>
-Result<MetricField<D>> metric_of(const SimplexMesh<D>& mesh, const std::string& sol,
-                                 const std::string& name, MetricFunction<D>* function) {
-  if (!sol.empty()) {
-    Result<MetricField<D>> field = read_sol<D>(sol, mesh.node_count());
-    if (!field) return of_input(field.error());
-    return field;
-  }
-  if (name.empty()) return MetricField<D>{};
-  Result<MetricFunction<D>> analytic = named_metric<D>(name);
-  if (!analytic) return analytic.error();
-  if (function) *function = *analytic;
-  return sample_metric<D>(*analytic, mesh.points);
-}
-
-Json stats_json(const Stats& s) {
-  return {{"count", s.count}, {"min", s.min}, {"p1", s.p1},    {"p5", s.p5},
-          {"p25", s.p25},     {"p50", s.p50}, {"p75", s.p75},  {"p95", s.p95},
-          {"p99", s.p99},     {"max", s.max}, {"mean", s.mean}};
-}
-
-Json report_json(const CheckReport& r, bool with_metric) {
-  const MeshReport& m = r.mesh;
-  Json json = {{"phase", "check"},
-               {"dimension", r.dimension},
-               {"nodes", m.nodes},
-               {"elements", m.elements},
-               {"boundary_faces", m.faces_boundary},
-               {"valid", m.valid()},
-               {"conforming", m.conforming()},
-               {"finding", m.first_finding},
-               {"inverted", m.inverted},
-               {"faces_of_more_than_two_elements", m.faces_shared},
-               {"misoriented", m.misoriented},
-               {"facets_missing", m.facets_missing},
-               {"facets_extra", m.facets_extra},
-               {"unused_nodes", m.unused},
-               {"volume", m.volume},
-               {"volume_by_boundary", m.volume_boundary},
-               {"boundary_area", m.boundary_area},
-               {"edges", r.edges},
-               {"aspect_ratio", stats_json(r.aspect_ratio)}};
-  if (!with_metric) return json;
-  json["edge_length"] = stats_json(r.edge_length);
-  json["unit_edges"] = r.unit_edges;
-  json["mean_ratio"] = stats_json(r.mean_ratio);
-  json["mean_ratio_mean_metric"] = stats_json(r.mean_ratio_mean);
-  json["shape"] = stats_json(r.shape);
-  json["quality"] = stats_json(r.quality);
-  json["conformity"] = stats_json(r.conformity);
-  json["conformity_invariant"] = stats_json(r.conformity_invariant);
-  json["flat"] = r.flat;
-  json["allocation"] = r.allocation;
-  return json;
-}
-
 void say_stats(Console& console, const char* name, const Stats& s) {
   char line[200];
   std::snprintf(line, sizeof line, "  %-26s %10.6g %10.6g %10.6g %10.6g %10.6g", name, s.min, s.p5,
@@ -197,66 +113,6 @@ int check_mesh(const SimplexMesh<D>& mesh, MetricField<D> metric, const CheckCom
   return 0;
 }
 
-/// Writes the adapted mesh: any format in 3D, Medit in 2D.
-template <int D>
-Result<void> write_adapted(const std::string& output, Adapted<D>&& adapted) {
-  if constexpr (D == 3) {
-    MeshState state;
-    state.mesh = std::move(adapted.mesh);
-    state.metric = std::move(adapted.metric);
-    state.quality = element_qualities<3>(state.mesh, state.metric);
-    Result<ExportCertificate> proof = export_mesh(output, state, Study{});
-    if (!proof) return proof.error();
-    return {};
-  } else {
-    if (Result<void> done = write_medit<D>(adapted.mesh, output); !done) return done;
-    return write_sol<D>(adapted.metric, fs::path(output).replace_extension(".sol"));
-  }
-}
-
-template <int D>
-int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& console) {
-  const Progress progress = console.progress();
-  if (Result<void> known = check_export_name(c.output); !known) return console.fail(known.error());
-  if (D == 2 && fs::path(c.output).extension() != ".mesh")
-    return console.fail({Code::usage, "A 2D mesh is written as Medit only.", "Use OUT.mesh."});
-  MetricFunction<D> function;
-  Result<MetricField<D>> metric = metric_of<D>(mesh, c.sol, c.metric, &function);
-  if (!metric) return console.fail(metric.error());
-  AdaptParams params;
-  params.chord_tolerance = c.chord_tolerance;
-  params.seed = c.seed;
-  Adapted<D> current{mesh, std::move(*metric), {}};
-  for (int i = 1; i <= c.iterations; ++i) {
-    const Progress round = progress.portion((i - 1.0) / c.iterations, 1.0 * i / c.iterations,
-                                            "adaption " + std::to_string(i));
-    Result<Adapted<D>> next =
-        adapt<D>(current.mesh, current.metric, nullptr, params, round.portion(0, 0.9), function);
-    if (!next) return console.fail(next.error());
-    current = std::move(*next);
-    // The field that was transported drifts; an analytic metric is known exactly at the new nodes.
-    if (function) current.metric = sample_metric<D>(function, current.mesh.points);
-    Result<CheckReport> report = check<D>(current.mesh, current.metric, round.portion(0.9, 1));
-    if (!report) return console.fail(report.error());
-    char line[200];
-    std::snprintf(
-        line, sizeof line,
-        "%3d %10s nodes %10s elements   quality mean %.3f worst %.3f   unit edges %.1f %%", i,
-        grouped(report->mesh.nodes).c_str(), grouped(report->mesh.elements).c_str(),
-        report->quality.mean, report->quality.min, 100 * report->unit_edges);
-    console.say(line);
-    Json json = report_json(*report, true);
-    json["phase"] = "iteration";
-    json["iteration"] = i;
-    console.emit(dump(json));
-  }
-  if (Result<void> done = write_adapted<D>(c.output, std::move(current)); !done)
-    return console.fail(done.error());
-  console.say("wrote " + c.output);
-  console.emit(dump({{"phase", "written"}, {"file", c.output}}));
-  return 0;
-}
-
 /// "t-junction" and "tray" find "t_junction" and "ribbed_tray".
 std::string sample_called(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
@@ -277,14 +133,6 @@ int run_check(const CheckCommand& c, Console& console) {
   if (const auto* flat = std::get_if<SimplexMesh<2>>(&*mesh))
     return check_mesh<2>(*flat, {}, c, console);
   return check_mesh<3>(std::get<SimplexMesh<3>>(*mesh), std::move(own), c, console);
-}
-
-int run_adapt(const AdaptCommand& c, Console& console) {
-  Result<AnyMesh> mesh = read_any(c.mesh, nullptr, console.progress().portion(0, 0));
-  if (!mesh) return console.fail(of_input(mesh.error()));
-  if (const auto* flat = std::get_if<SimplexMesh<2>>(&*mesh))
-    return adapt_mesh<2>(*flat, c, console);
-  return adapt_mesh<3>(std::get<SimplexMesh<3>>(*mesh), c, console);
 }
 
 int run_info(const InfoCommand& c, Console& console) {

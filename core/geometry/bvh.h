@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "core/base/progress.h"
 #include "core/geometry/simplex.h"
 
 namespace lamella {
@@ -27,6 +28,7 @@ struct Box {
     const Vec<D> e = (hi - lo).cwiseMax(0.0);
     if constexpr (D == 2) return e[0] + e[1];
     if constexpr (D == 3) return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
+    if constexpr (D == 4) return e[0] * e[1] * (e[2] + e[3]) + e[2] * e[3] * (e[0] + e[1]);
   }
 };
 
@@ -45,8 +47,10 @@ class Bvh {
 
   explicit Bvh(const Vec<D>& center = Vec<D>::Zero()) : center_(center) {}
 
-  /// Adds a tree over `items` (indices into `boxes`, reordered) and returns its root.
-  Ref build(const std::vector<Box<D>>& boxes, std::span<std::int32_t> items);
+  /// Adds a tree over `items` (indices into `boxes`, reordered) and returns its root. A cancelled
+  /// tree lacks items: ask `progress` before it is used.
+  Ref build(const std::vector<Box<D>>& boxes, std::span<std::int32_t> items,
+            const Progress& progress = {});
 
   const std::vector<std::int32_t>& order() const { return order_; }
 
@@ -71,7 +75,8 @@ class Bvh {
   };
 
   Ref make_block(std::span<const std::int32_t> items);
-  Ref make_node(const std::vector<Box<D>>& boxes, std::span<std::int32_t> items, int depth);
+  Ref make_node(const std::vector<Box<D>>& boxes, std::span<std::int32_t> items, int depth,
+                const Progress& progress);
   std::size_t split(const std::vector<Box<D>>& boxes, std::span<std::int32_t> items,
                     bool median) const;
 
@@ -81,11 +86,11 @@ class Bvh {
 };
 
 template <int D>
-typename Bvh<D>::Ref Bvh<D>::build(const std::vector<Box<D>>& boxes,
-                                   std::span<std::int32_t> items) {
+typename Bvh<D>::Ref Bvh<D>::build(const std::vector<Box<D>>& boxes, std::span<std::int32_t> items,
+                                   const Progress& progress) {
   if (items.empty()) return kNothing;
   if (items.size() <= kWide) return make_block(items);
-  return make_node(boxes, items, 0);
+  return make_node(boxes, items, 0, progress);
 }
 
 template <int D>
@@ -97,7 +102,9 @@ typename Bvh<D>::Ref Bvh<D>::make_block(std::span<const std::int32_t> items) {
 
 template <int D>
 typename Bvh<D>::Ref Bvh<D>::make_node(const std::vector<Box<D>>& boxes,
-                                       std::span<std::int32_t> items, int depth) {
+                                       std::span<std::int32_t> items, int depth,
+                                       const Progress& progress) {
+  if (progress.cancelled()) return make_block(items.first(kWide));
   struct Group {
     std::span<std::int32_t> items;
     Box<D> box;
@@ -131,8 +138,9 @@ typename Bvh<D>::Ref Bvh<D>::make_node(const std::vector<Box<D>>& boxes,
   for (std::size_t k = 0; k < kWide; ++k) {
     Ref child = kNothing;
     if (k < parts.size())
-      child = parts[k].items.size() <= kWide ? make_block(parts[k].items)
-                                             : make_node(boxes, parts[k].items, depth + 1);
+      child = parts[k].items.size() <= kWide
+                  ? make_block(parts[k].items)
+                  : make_node(boxes, parts[k].items, depth + 1, progress);
     Node& node = nodes_[index];
     node.child[k] = child;
     for (int a = 0; a < D; ++a) {

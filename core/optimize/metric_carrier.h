@@ -7,8 +7,9 @@
 
 namespace lamella {
 
-/// The quantity that is averaged instead of the metric (section 3.2.2): M, M^(1/2), M^(-1/2) or
-/// log M, packed.
+/// The quantity that is averaged instead of the metric (section 3.2.2): M, M^(1/2), M^(-1/2),
+/// log M, or the smallest size h of (3.20) as h I, packed. The last one forgets directions: the
+/// metric it gives back is isotropic.
 template <int D>
 class MetricCarrier {
  public:
@@ -26,7 +27,7 @@ class MetricCarrier {
         return map(metric, [](double l) { return std::log(l); });
       case MetricMean::h: {
         const Eigen::SelfAdjointEigenSolver<Mat<D>> solver(metric.full(), Eigen::EigenvaluesOnly);
-        return Packed<D>::from(Mat<D>::Identity() / std::sqrt(solver.eigenvalues()[D - 1]));
+        return identity(1 / std::sqrt(solver.eigenvalues()[D - 1]));
       }
     }
     return metric;
@@ -39,13 +40,14 @@ class MetricCarrier {
         const Mat<D> r = carried.full();
         return Packed<D>::from(r * r);
       }
-      case MetricMean::size:
-      case MetricMean::h: {
+      case MetricMean::size: {
         const Mat<D> r = carried.full().inverse();
         return Packed<D>::from(r * r);
       }
       case MetricMean::log:
         return map(carried, [](double l) { return std::exp(l); });
+      case MetricMean::h:
+        return identity(1 / (carried.c[0] * carried.c[0]));
     }
     return carried;
   }
@@ -58,6 +60,11 @@ class MetricCarrier {
     for (int k = 0; k < D; ++k) l[k] = f(l[k]);
     return Packed<D>::from(solver.eigenvectors() * l.asDiagonal() *
                            solver.eigenvectors().transpose());
+  }
+  static Packed<D> identity(double scale) {
+    Packed<D> p = Packed<D>::zero();
+    for (int k = 0; k < D; ++k) p.c[Packed<D>::index(k, k)] = scale;
+    return p;
   }
   MetricMean mean_;
 };

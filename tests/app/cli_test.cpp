@@ -85,11 +85,25 @@ TEST_F(Cli, HelpAndVersionAreNoErrors) {
 
 TEST_F(Cli, WrongUsageIsStatus2AndWritesNothing) {
   for (const std::string arguments :
-       {"", "frobnicate", "mesh", "mesh a.step", "mesh a.step -n 0 -o b.msh",
-        "mesh a.step -n four -o b.msh", "mesh a.step --no-such-option -o b.msh",
-        "mesh a.step -o b.xyz", "mesh a.step -o no/such/folder/b.msh", "mesh a.step -o",
-        "mesh a.step --unit furlong -o b.msh", "adapt a.mesh -o b.mesh",
-        "adapt a.mesh --sol a.sol --metric uniform -o b.mesh", "sample no_such_part",
+       {"",
+        "frobnicate",
+        "mesh",
+        "mesh a.step",
+        "mesh a.step -n 0 -o b.msh",
+        "mesh a.step -n four -o b.msh",
+        "mesh a.step --no-such-option -o b.msh",
+        "mesh a.step -o b.xyz",
+        "mesh a.step -o no/such/folder/b.msh",
+        "mesh a.step -o",
+        "mesh a.step --unit furlong -o b.msh",
+        "adapt a.mesh -o b.mesh",
+        "adapt a.mesh --sol a.sol --metric uniform -o b.mesh",
+        "adapt a.mesh --metric uniform --background -o b.mesh",
+        "adapt a.mesh --metric uniform --mean median -o b.mesh",
+        "adapt a.mesh --metric uniform --gradation-kind isotropic -o b.mesh",
+        "adapt a.mesh --metric uniform --max-anisotropy 0.5 -o b.mesh",
+        "adapt a.mesh --metric uniform --memory -1 -o b.mesh",
+        "sample no_such_part",
         "check a.mesh --layers 0"}) {
     EXPECT_EQ(run(arguments), 2) << arguments << "\n" << err;
     EXPECT_FALSE(err.empty()) << arguments;
@@ -256,6 +270,145 @@ TEST_F(Cli, AdaptsToAnAnalyticMetricIn2DAnd3D) {
   EXPECT_GT(lines().at(2)["unit_edges"], 0.8);
   EXPECT_NEAR(lines().at(2)["volume"], 1, 1e-9);
   EXPECT_EQ(run("adapt cube.mesh --metric nonsense -o d.mesh"), 2);
+}
+
+TEST_F(Cli, AnAdaptionIsBoundedAndTellsWhatTheBoundsDid) {
+  ASSERT_TRUE(write_medit<2>(unit_box<2>(4), folder / "square.mesh").ok());
+  // A bound that holds everywhere is the metric itself.
+  ASSERT_EQ(run("adapt square.mesh --metric uniform:h=0.1 -o a.mesh"), 0) << err;
+  ASSERT_EQ(run("adapt square.mesh --metric uniform:h=5 --h-max 0.1 -o b.mesh --json"), 0) << err;
+  EXPECT_EQ(read_file(folder / "a.mesh").value(), read_file(folder / "b.mesh").value());
+  const json told = lines().at(0);
+  EXPECT_EQ(told["phase"], "conditioning");
+  EXPECT_EQ(told["steps"].at(0)["step"], "h_max");
+  EXPECT_EQ(told["steps"].at(0)["nodes"], 25);
+  EXPECT_NEAR(told["steps"].at(0)["size_largest"], 50, 1e-6);
+  EXPECT_NEAR(told["steps"].at(0)["anisotropy_lost"], 1, 1e-9);
+  EXPECT_NEAR(told["elements_after"], 4 / std::sqrt(3.0) / 0.01, 1e-6);
+  EXPECT_TRUE(lines().at(1)["adaption"].contains("splits"));
+
+  // As many elements as asked, and 20 to 1 cut to 4 to 1.
+  ASSERT_EQ(run("adapt square.mesh --metric constaniso:hx=0.02,hy=0.4 --max-anisotropy 4 "
+                "--elements 600 -o c.mesh --json"),
+            0)
+      << err;
+  const json last = lines().at(5);
+  EXPECT_NEAR(last["elements"], 600, 120);  // as if all were equilateral
+  EXPECT_GT(last["unit_edges"], 0.9);
+  const auto field = read_sol<2>(folder / "c.sol", last["nodes"]).value();
+  EXPECT_NEAR(sizes<2>(field[1])[1], 4 * sizes<2>(field[1])[0], 1e-6);
+
+  // A size jump of 40 at the nodes, once by each kind, is bounded on the way.
+  MetricField<2> jump(26, isotropic_metric<2>(0.4));
+  jump[13] = isotropic_metric<2>(0.01);
+  ASSERT_TRUE(write_sol<2>(jump, folder / "square.sol").ok());
+  for (const std::string kind : {"isotropic", "intersection"}) {
+    ASSERT_EQ(run("adapt square.mesh --sol square.sol --gradation 1.5 --gradation-kind " + kind +
+                  " --iterations 1 -o d.mesh --json"),
+              0)
+        << err;
+    const json step = lines().at(0)["steps"].at(0);
+    EXPECT_EQ(step["step"], "gradation");
+    EXPECT_EQ(step["settled"], true);
+    EXPECT_EQ(step["nodes"], 22);  // two corners are 1 away: .01 + ln 1.5 is above 0.4
+    EXPECT_GT(step["elements_after"], step["elements_before"]);
+  }
+  EXPECT_EQ(run("adapt square.mesh --metric uniform --gradation 1 -o d.mesh"), 2);
+  EXPECT_EQ(run("adapt square.mesh --metric uniform --h-min 1 --h-max 0.5 -o d.mesh"), 2);
+  // The text says the same as the JSON.
+  ASSERT_EQ(run("adapt square.mesh --metric uniform:h=5 --h-max 0.1 -o b.mesh"), 0);
+  EXPECT_NE(out.find("h_max"), std::string::npos);
+  EXPECT_NE(out.find("sweeps"), std::string::npos);
+}
+
+TEST_F(Cli, AGradationOfAnAnalyticMetricReachesEveryPlaceOfIt) {
+  // The layer of h = 0.01 lies between the nodes of the first mesh.
+  ASSERT_TRUE(write_medit<2>(box_mesh<2>({5, 5}, {0, 0}, {7, 9}), folder / "box.mesh").ok());
+  ASSERT_EQ(run("adapt box.mesh --metric gb2d --gradation 1.3 --iterations 6 -o a.mesh --json"), 0)
+      << err;
+  const json graded = lines().at(11);  // after the conditioning and figures of five others
+  ASSERT_EQ(graded["phase"], "iteration");
+  EXPECT_GT(graded["unit_edges"], 0.9);
+  ASSERT_EQ(run("adapt box.mesh --metric gb2d --iterations 6 -o b.mesh --json"), 0) << err;
+  EXPECT_GT(graded["elements"].get<double>(), 1.2 * lines().at(5)["elements"].get<double>());
+}
+
+TEST_F(Cli, ABackgroundMetricIsNotBlurredFromPassToPass) {
+  const SimplexMesh<2> mesh = unit_box<2>(20);
+  ASSERT_TRUE(write_medit<2>(mesh, folder / "square.mesh").ok());
+  const auto size = [](const Vec<2>& x) { return 0.01 + 0.2 * std::abs(x[0] - 0.5); };
+  MetricField<2> field(mesh.points.size(), Metric<2>::Identity());
+  for (std::size_t n = 1; n < field.size(); ++n)
+    field[n] = metric_from_sizes<2>(Mat<2>::Identity(), {size(mesh.points[n]), 0.2});
+  ASSERT_TRUE(write_sol<2>(field, folder / "square.sol").ok());
+  ASSERT_EQ(run("adapt square.mesh --sol square.sol -o a.mesh --iterations 4"), 0) << err;
+  ASSERT_EQ(run("adapt square.mesh --sol square.sol --background -o b.mesh --iterations 4"), 0);
+  ASSERT_EQ(run("adapt square.mesh --sol square.sol --no-background -o c.mesh --iterations 4"), 0);
+  EXPECT_EQ(read_file(folder / "a.mesh").value(), read_file(folder / "b.mesh").value());
+  EXPECT_NE(read_file(folder / "a.mesh").value(), read_file(folder / "c.mesh").value());
+  const auto adapted = read_medit<2>(folder / "a.mesh").value();
+  const auto kept = read_sol<2>(folder / "a.sol", adapted.node_count()).value();
+  // Sizes are linear between the nodes of the background, so they are met at any place.
+  for (std::size_t n = 1; n < kept.size(); ++n) {
+    EXPECT_NEAR(size_from_eigenvalue(kept[n](0, 0)), size(adapted.points[n]), 1e-9);
+    EXPECT_NEAR(size_from_eigenvalue(kept[n](1, 1)), 0.2, 1e-9);
+  }
+}
+
+TEST_F(Cli, EveryMeanAdapts) {
+  ASSERT_TRUE(write_medit<2>(unit_box<2>(4), folder / "square.mesh").ok());
+  for (const std::string mean : {"m", "root", "size", "log", "h"})
+    for (const std::string average : {"l2", "l1"}) {
+      ASSERT_EQ(run("adapt square.mesh --metric uniform:h=0.1 --mean " + mean + " --element-mean " +
+                    mean + " --size-average " + average + " --sweeps 20 --json -o a.mesh"),
+                0)
+          << err;
+      EXPECT_GT(lines().at(2)["unit_edges"], 0.9) << mean << average;
+    }
+}
+
+TEST_F(Cli, UnknownGroupsAndBodiesAreToldWithTheKnownOnes) {
+  SimplexMesh<3> box = two_body_box<3>(2);
+  box.bodies = {"core", "shell"};
+  box.groups = {"walls", "gate"};
+  box.facet_group[3] = 1;
+  ASSERT_TRUE(write_msh(box, {}, folder / "box.msh").ok());
+  EXPECT_EQ(run("adapt box.msh --metric uniform --freeze-group walls --freeze-group lid -o a.msh"),
+            2);
+  EXPECT_NE(err.find("\"lid\""), std::string::npos) << err;
+  EXPECT_NE(err.find("\"walls\", \"gate\""), std::string::npos) << err;
+  EXPECT_EQ(run("adapt box.msh --metric uniform --freeze-body inlay -o a.msh"), 2);
+  EXPECT_NE(err.find("\"core\", \"shell\""), std::string::npos) << err;
+  EXPECT_EQ(folder.names(), Names{"box.msh"});
+}
+
+TEST_F(Cli, AnAdaptionDoesNotDependOnTheThreads) {
+  ASSERT_TRUE(write_medit<3>(unit_box<3>(4), folder / "cube.mesh").ok());
+  for (const std::string n : {"1", "2"})
+    ASSERT_EQ(run("adapt cube.mesh --metric linear:h0=0.05 --gradation 1.5 --elements 4000 "
+                  "--iterations 2 --threads " +
+                  n + " -o " + n + ".msh"),
+              0)
+        << err;
+  EXPECT_EQ(read_file(folder / "1.msh").value(), read_file(folder / "2.msh").value());
+}
+
+TEST_F(Cli, ACancelledAdaptionWritesItsMesh) {
+  ASSERT_TRUE(write_medit<3>(unit_box<3>(4), folder / "cube.mesh").ok());
+  FILE* pipe =
+      start("adapt cube.mesh --metric uniform:h=0.08 --iterations 1000 --json -o adapted.mesh");
+  char line[65536];
+  ASSERT_NE(std::fgets(line, sizeof line, pipe), nullptr);
+  const auto pid = static_cast<pid_t>(std::stol(line));
+  ASSERT_NE(std::fgets(line, sizeof line, pipe), nullptr);
+  EXPECT_NE(std::string(line).find("\"iteration\":1"), std::string::npos) << line;
+  ::kill(pid, SIGINT);
+  EXPECT_EQ(finish(pipe), 130) << err;
+  const auto mesh = read_medit<3>(folder / "adapted.mesh");
+  ASSERT_TRUE(mesh.ok());
+  EXPECT_TRUE(validate<3>(*mesh).ok());
+  EXPECT_GT(mesh->node_count(), 1000u);
+  EXPECT_TRUE(read_sol<3>(folder / "adapted.sol", mesh->node_count()).ok());
 }
 
 TEST_F(Cli, ASampleBringsAStudyOfAllItsBodies) {

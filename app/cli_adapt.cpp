@@ -1,0 +1,306 @@
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "app/cli_commands.h"
+#include "app/cli_common.h"
+#include "core/mesh/quality.h"
+#include "core/metric/analytic.h"
+#include "core/metric/intersect.h"
+#include "core/optimize/adapt.h"
+#include "core/optimize/background_metric.h"
+#include "core/optimize/metric_conditioning.h"
+
+namespace lamella::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+MetricMean mean_called(const std::string& name) {
+  static const std::map<std::string, MetricMean> kMeans = {{"m", MetricMean::m},
+                                                           {"root", MetricMean::root},
+                                                           {"size", MetricMean::size},
+                                                           {"log", MetricMean::log},
+                                                           {"h", MetricMean::h}};
+  return kMeans.at(name);
+}
+
+/// Ids of the names asked, each once.
+Result<std::vector<std::int32_t>> ids_of(const std::vector<std::string>& asked,
+                                         const std::vector<std::string>& known,
+                                         const std::string& what) {
+  std::vector<std::int32_t> ids;
+  for (const std::string& name : asked) {
+    const auto at = std::find(known.begin(), known.end(), name);
+    if (at == known.end()) {
+      std::string listed;
+      for (const std::string& k : known) listed += (listed.empty() ? "\"" : ", \"") + k + "\"";
+      return Error{Code::usage, "The mesh has no " + what + " called \"" + name + "\".",
+                   "It has: " + listed + "."};
+    }
+    ids.push_back(static_cast<std::int32_t>(at - known.begin()));
+  }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+template <int D>
+Result<AdaptParams> params_of(const AdaptCommand& c, const SimplexMesh<D>& mesh) {
+  AdaptParams p;
+  p.mean = mean_called(c.mean);
+  p.element_mean = mean_called(c.element_mean);
+  p.size_average = c.size_average == "l1" ? SizeAverage::l1 : SizeAverage::l2;
+  p.chord_tolerance = c.chord_tolerance;
+  if (c.sweeps) p.sweeps = *c.sweeps;
+  if (c.threads) p.threads = *c.threads;
+  p.memory_limit = c.memory;
+  p.treat_blocking = c.split_blocking;
+  p.seed = c.seed;
+  Result<std::vector<std::int32_t>> groups = ids_of(c.freeze_groups, mesh.groups, "boundary group");
+  if (!groups) return groups.error();
+  p.frozen_groups = std::move(*groups);
+  Result<std::vector<std::int32_t>> bodies = ids_of(c.freeze_bodies, mesh.bodies, "body");
+  if (!bodies) return bodies.error();
+  p.frozen_bodies = std::move(*bodies);
+  return p;
+}
+
+ConditionParams conditions_of(const AdaptCommand& c) {
+  ConditionParams p;
+  p.h_min = c.h_min;
+  p.h_max = c.h_max;
+  p.max_anisotropy = c.max_anisotropy;
+  p.gradation = c.gradation;
+  p.gradation_kind =
+      c.gradation_kind == "isotropic" ? GradationKind::isotropic : GradationKind::intersection;
+  p.elements = c.elements;
+  if (c.threads) p.threads = *c.threads;
+  return p;
+}
+
+void tell_conditioning(const ConditionReport& r, const ConditionParams& params, int iteration,
+                       Console& console) {
+  Json steps = Json::array();
+  for (const ConditionStep& s : r.steps) {
+    char line[300];
+    std::snprintf(
+        line, sizeof line,
+        "    %-10s %10s nodes, sizes by %.3g (mean %.3g), anisotropy lost %.3g (mean kept "
+        "%.3g), elements %.4g -> %.4g%s",
+        step_name(s.kind), grouped(s.nodes).c_str(), s.size_largest, s.size_mean, s.anisotropy_lost,
+        s.anisotropy_mean, s.elements_before, s.elements_after, s.settled ? "" : ", not settled");
+    console.say(line);
+    Json step = {{"step", step_name(s.kind)},
+                 {"nodes", s.nodes},
+                 {"size_largest", s.size_largest},
+                 {"size_mean", s.size_mean},
+                 {"anisotropy_lost", s.anisotropy_lost},
+                 {"anisotropy_mean", s.anisotropy_mean},
+                 {"elements_before", s.elements_before},
+                 {"elements_after", s.elements_after}};
+    if (s.kind == ConditionStep::Kind::gradation) {
+      step["sweeps"] = s.sweeps;
+      step["settled"] = s.settled;
+    }
+    steps.push_back(std::move(step));
+  }
+  if (!r.elements_reached)
+    console.say("    the bounds leave no way to " + short_number(*params.elements, 6) +
+                " elements: the metric asks for " + short_number(r.elements_after, 6));
+  console.emit(dump({{"phase", "conditioning"},
+                     {"iteration", iteration},
+                     {"scale", r.scale},
+                     {"elements_before", r.elements_before},
+                     {"elements_after", r.elements_after},
+                     {"elements_reached", r.elements_reached},
+                     {"steps", steps}}));
+}
+
+/// The metric that is asked of each adaption: where it comes from, and its conditioning.
+template <int D>
+class AskedMetric {
+ public:
+  AskedMetric(const AdaptCommand& command, Console& console)
+      : command_(command), console_(console), conditions_(conditions_of(command)) {}
+
+  /// Reads or parses it; a nodal metric is conditioned here, once, on the mesh it came with.
+  Result<void> start(const SimplexMesh<D>& mesh, const Progress& progress) {
+    Result<MetricField<D>> metric = metric_of<D>(mesh, command_.sol, command_.metric, &analytic_);
+    if (!metric) return metric.error();
+    nodal_ = std::move(*metric);
+    if (analytic_) return {};
+    if (conditions_.any()) {
+      Result<Conditioned<D>> r = condition_metric<D>(mesh, nodal_, conditions_, progress);
+      if (!r) return r.error();
+      tell_conditioning(r->report, conditions_, 1, console_);
+      nodal_ = std::move(r->metric);
+    }
+    if (!command_.background) return {};
+    Result<MetricFunction<D>> background =
+        background_metric<D>(mesh, nodal_, mean_called(command_.mean), progress);
+    if (!background) return background.error();
+    function_ = std::move(*background);
+    return {};
+  }
+
+  /// Makes it ready for the next adaption: an analytic metric is conditioned anew on each mesh.
+  Result<void> prepare(Adapted<D>& current, int iteration, const Progress& progress) {
+    const SimplexMesh<D>& mesh = current.mesh;
+    if (!analytic_) return {};
+    if (!conditions_.any()) {
+      function_ = analytic_;
+      return {};
+    }
+    Result<Conditioned<D>> r =
+        condition_metric<D>(mesh, sample_metric<D>(analytic_, mesh.points), conditions_, progress);
+    if (!r) return r.error();
+    tell_conditioning(r->report, conditions_, iteration, console_);
+    current.metric = std::move(r->metric);
+    // Bounds hold anywhere; the gradation is known on the mesh only, which may miss what the
+    // analytic metric asks between the nodes: both count.
+    const MetricFunction<D> bounded = [f = analytic_, p = conditions_,
+                                       s = r->report.scale](const Vec<D>& x) {
+      return bounded_metric<D>(f(x), p, s);
+    };
+    function_ = bounded;
+    if (!conditions_.gradation) return {};
+    Result<MetricFunction<D>> graded =
+        background_metric<D>(mesh, current.metric, mean_called(command_.mean), progress);
+    if (!graded) return graded.error();
+    function_ = [bounded, g = std::move(*graded)](const Vec<D>& x) {
+      return intersect<D>(g(x), bounded(x));
+    };
+    return {};
+  }
+
+  const MetricFunction<D>& function() const { return function_; }
+  /// At the nodes of the first mesh.
+  const MetricField<D>& nodal() const { return nodal_; }
+
+ private:
+  const AdaptCommand& command_;
+  Console& console_;
+  ConditionParams conditions_;
+  MetricFunction<D> analytic_;  ///< empty for a nodal metric
+  MetricFunction<D> function_;  ///< what `adapt` asks; empty: the metric is carried along
+  MetricField<D> nodal_;
+};
+
+void tell_iteration(int i, const CheckReport& check, const AdaptReport& r, Console& console) {
+  char line[240];
+  std::snprintf(line, sizeof line,
+                "%3d %10s nodes %10s elements   quality mean %.3f worst %.3f   unit edges %.1f %%",
+                i, grouped(check.mesh.nodes).c_str(), grouped(check.mesh.elements).c_str(),
+                check.quality.mean, check.quality.min, 100 * check.unit_edges);
+  console.say(line);
+  std::snprintf(line, sizeof line, "    %s splits, %s collapses, %s swaps, %s moves in %d sweeps%s",
+                grouped(r.splits).c_str(), grouped(r.collapses).c_str(), grouped(r.swaps).c_str(),
+                grouped(r.moves).c_str(), r.sweeps, r.settled ? ", settled" : "");
+  console.say(line);
+  if (r.blocking > 0)
+    console.say("    " + grouped(r.blocking) + " blocking faces, " + grouped(r.blocking_treated) +
+                " opened");
+  Json json = report_json(check, true);
+  json["phase"] = "iteration";
+  json["iteration"] = i;
+  json["adaption"] = {{"splits", r.splits},
+                      {"collapses", r.collapses},
+                      {"swaps", r.swaps},
+                      {"moves", r.moves},
+                      {"sweeps", r.sweeps},
+                      {"settled", r.settled},
+                      {"forecast_nodes", r.forecast_nodes},
+                      {"forecast_memory", r.forecast_memory},
+                      {"blocking", r.blocking},
+                      {"blocking_treated", r.blocking_treated}};
+  console.emit(dump(json));
+}
+
+/// Writes the adapted mesh: any format in 3D, Medit in 2D.
+template <int D>
+Result<void> write_adapted(const std::string& output, Adapted<D>&& adapted) {
+  if constexpr (D == 3) {
+    MeshState state;
+    state.mesh = std::move(adapted.mesh);
+    state.metric = std::move(adapted.metric);
+    state.quality = element_qualities<3>(state.mesh, state.metric);
+    Result<ExportCertificate> proof = export_mesh(output, state, Study{});
+    if (!proof) return proof.error();
+    return {};
+  } else {
+    if (Result<void> done = write_medit<D>(adapted.mesh, output); !done) return done;
+    return write_sol<D>(adapted.metric, fs::path(output).replace_extension(".sol"));
+  }
+}
+
+template <int D>
+int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& console) {
+  const Progress progress = console.progress();
+  if (Result<void> known = check_export_name(c.output); !known) return console.fail(known.error());
+  if (D == 2 && fs::path(c.output).extension() != ".mesh")
+    return console.fail({Code::usage, "A 2D mesh is written as Medit only.", "Use OUT.mesh."});
+  Result<AdaptParams> params = params_of<D>(c, mesh);
+  if (!params) return console.fail(params.error());
+  AskedMetric<D> asked(c, console);
+  if (Result<void> done = asked.start(mesh, progress.portion(0, 0)); !done)
+    return console.fail(done.error());
+
+  Adapted<D> current{mesh, asked.nodal(), {}};
+  int adapted = 0;
+  bool cancelled = false;
+  while (adapted < c.iterations && !cancelled) {
+    const int i = adapted + 1;
+    const Progress round = progress.portion((i - 1.0) / c.iterations, 1.0 * i / c.iterations,
+                                            "adaption " + std::to_string(i));
+    Result<void> ready = asked.prepare(current, i, round.portion(0, 0.05));
+    Result<Adapted<D>> next = ready ? adapt<D>(current.mesh, current.metric, nullptr, *params,
+                                               round.portion(0.05, 0.9), asked.function())
+                                    : Result<Adapted<D>>(ready.error());
+    if (!next) {
+      if (next.error().code != Code::cancelled || adapted == 0) return console.fail(next.error());
+      cancelled = true;
+      break;
+    }
+    current = std::move(*next);
+    ++adapted;
+    cancelled = current.report.cancelled;
+    // The field that was transported drifts; a function is known exactly at the new nodes.
+    if (asked.function()) current.metric = sample_metric<D>(asked.function(), current.mesh.points);
+    // A cancelled mesh is told about all the same.
+    Result<CheckReport> report =
+        check<D>(current.mesh, current.metric, cancelled ? Progress{} : round.portion(0.9, 1));
+    if (!report) {
+      if (report.error().code != Code::cancelled) return console.fail(report.error());
+      cancelled = true;
+      break;
+    }
+    tell_iteration(i, *report, current.report, console);
+  }
+  if (Result<void> done = write_adapted<D>(c.output, std::move(current)); !done)
+    return console.fail(done.error());
+  console.say("wrote " + c.output);
+  console.emit(dump({{"phase", "written"}, {"file", c.output}}));
+  if (cancelled)
+    return console.fail({Code::cancelled, "Cancelled; the mesh as far as it got was written.", ""});
+  return 0;
+}
+
+}  // namespace
+
+int run_adapt(const AdaptCommand& c, Console& console) {
+  std::optional<tbb::global_control> limit;
+  if (c.threads && *c.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(*c.threads));
+  Result<AnyMesh> mesh = read_any(c.mesh, nullptr, console.progress().portion(0, 0));
+  if (!mesh) return console.fail(of_input(mesh.error()));
+  if (const auto* flat = std::get_if<SimplexMesh<2>>(&*mesh))
+    return adapt_mesh<2>(*flat, c, console);
+  return adapt_mesh<3>(std::get<SimplexMesh<3>>(*mesh), c, console);
+}
+
+}  // namespace lamella::cli

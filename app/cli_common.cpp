@@ -1,0 +1,91 @@
+#include "app/cli_common.h"
+
+#include "app/services.h"
+#include "core/metric/analytic.h"
+
+namespace lamella::cli {
+
+namespace {
+
+Json stats_json(const Stats& s) {
+  return {{"count", s.count}, {"min", s.min}, {"p1", s.p1},    {"p5", s.p5},
+          {"p25", s.p25},     {"p50", s.p50}, {"p75", s.p75},  {"p95", s.p95},
+          {"p99", s.p99},     {"max", s.max}, {"mean", s.mean}};
+}
+
+}  // namespace
+
+std::string dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Error of_input(Error error) {
+  if (error.code == Code::io) error.code = Code::bad_input;
+  return error;
+}
+
+Result<AnyMesh> read_any(const std::string& file, MetricField<3>* metric,
+                         const Progress& progress) {
+  if (std::filesystem::path(file).extension() == ".mesh") return read_medit(file, progress);
+  Result<MeshState> state = read_mesh(file, progress);
+  if (!state) return state.error();
+  if (metric) *metric = std::move(state->metric);
+  return AnyMesh(std::move(state->mesh));
+}
+
+template <int D>
+Result<MetricField<D>> metric_of(const SimplexMesh<D>& mesh, const std::string& sol,
+                                 const std::string& name, MetricFunction<D>* function) {
+  if (!sol.empty()) {
+    Result<MetricField<D>> field = read_sol<D>(sol, mesh.node_count());
+    if (!field) return of_input(field.error());
+    return field;
+  }
+  if (name.empty()) return MetricField<D>{};
+  Result<MetricFunction<D>> analytic = named_metric<D>(name);
+  if (!analytic) return analytic.error();
+  if (function) *function = *analytic;
+  return sample_metric<D>(*analytic, mesh.points);
+}
+
+Json report_json(const CheckReport& r, bool with_metric) {
+  const MeshReport& m = r.mesh;
+  Json json = {{"phase", "check"},
+               {"dimension", r.dimension},
+               {"nodes", m.nodes},
+               {"elements", m.elements},
+               {"boundary_faces", m.faces_boundary},
+               {"valid", m.valid()},
+               {"conforming", m.conforming()},
+               {"finding", m.first_finding},
+               {"inverted", m.inverted},
+               {"faces_of_more_than_two_elements", m.faces_shared},
+               {"misoriented", m.misoriented},
+               {"facets_missing", m.facets_missing},
+               {"facets_extra", m.facets_extra},
+               {"unused_nodes", m.unused},
+               {"volume", m.volume},
+               {"volume_by_boundary", m.volume_boundary},
+               {"boundary_area", m.boundary_area},
+               {"edges", r.edges},
+               {"aspect_ratio", stats_json(r.aspect_ratio)}};
+  if (!with_metric) return json;
+  json["edge_length"] = stats_json(r.edge_length);
+  json["unit_edges"] = r.unit_edges;
+  json["mean_ratio"] = stats_json(r.mean_ratio);
+  json["mean_ratio_mean_metric"] = stats_json(r.mean_ratio_mean);
+  json["shape"] = stats_json(r.shape);
+  json["quality"] = stats_json(r.quality);
+  json["conformity"] = stats_json(r.conformity);
+  json["conformity_invariant"] = stats_json(r.conformity_invariant);
+  json["flat"] = r.flat;
+  json["allocation"] = r.allocation;
+  return json;
+}
+
+template Result<MetricField<2>> metric_of(const SimplexMesh<2>&, const std::string&,
+                                          const std::string&, MetricFunction<2>*);
+template Result<MetricField<3>> metric_of(const SimplexMesh<3>&, const std::string&,
+                                          const std::string&, MetricFunction<3>*);
+
+}  // namespace lamella::cli

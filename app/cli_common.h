@@ -1,0 +1,35 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/io/medit.h"
+#include "core/mesh/check.h"
+#include "core/metric/metric.h"
+
+namespace lamella::cli {
+
+/// What several subcommands share.
+
+using Json = nlohmann::ordered_json;
+
+/// One line; bytes that are not UTF-8 (file names may have them) are replaced.
+std::string dump(const Json& json);
+
+/// Whatever keeps an input from being read, it is the input that is bad.
+Error of_input(Error error);
+
+/// A mesh file of any kind; `metric` (may be null) gets the metric of an .msh or .vtu, if it has
+/// one.
+Result<AnyMesh> read_any(const std::string& file, MetricField<3>* metric, const Progress& progress);
+
+/// The metric asked at the nodes: from a .sol file, analytic, or none (empty). `function` (may be
+/// null) gets the analytic one.
+template <int D>
+Result<MetricField<D>> metric_of(const SimplexMesh<D>& mesh, const std::string& sol,
+                                 const std::string& name, MetricFunction<D>* function);
+
+/// The findings of a check, without those about the metric where there is none.
+Json report_json(const CheckReport& report, bool with_metric);
+
+}  // namespace lamella::cli
