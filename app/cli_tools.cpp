@@ -197,7 +197,7 @@ int check_mesh(const SimplexMesh<D>& mesh, MetricField<D> metric, const CheckCom
   return 0;
 }
 
-/// Writes the adapted mesh: any format in 3D, Medit in 2D.
+/// Writes the adapted mesh: any format in 3D, Medit in 2D and 4D.
 template <int D>
 Result<void> write_adapted(const std::string& output, Adapted<D>&& adapted) {
   if constexpr (D == 3) {
@@ -218,8 +218,9 @@ template <int D>
 int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& console) {
   const Progress progress = console.progress();
   if (Result<void> known = check_export_name(c.output); !known) return console.fail(known.error());
-  if (D == 2 && fs::path(c.output).extension() != ".mesh")
-    return console.fail({Code::usage, "A 2D mesh is written as Medit only.", "Use OUT.mesh."});
+  if (D != 3 && fs::path(c.output).extension() != ".mesh")
+    return console.fail({Code::usage, "A " + std::to_string(D) + "D mesh is written as Medit only.",
+                         "Use OUT.mesh."});
   MetricFunction<D> function;
   Result<MetricField<D>> metric = metric_of<D>(mesh, c.sol, c.metric, &function);
   if (!metric) return console.fail(metric.error());
@@ -274,17 +275,18 @@ int run_check(const CheckCommand& c, Console& console) {
   MetricField<3> own;
   Result<AnyMesh> mesh = read_any(c.mesh, &own, console.progress().portion(0, 0));
   if (!mesh) return console.fail(of_input(mesh.error()));
-  if (const auto* flat = std::get_if<SimplexMesh<2>>(&*mesh))
-    return check_mesh<2>(*flat, {}, c, console);
-  return check_mesh<3>(std::get<SimplexMesh<3>>(*mesh), std::move(own), c, console);
+  if (const auto* solid = std::get_if<SimplexMesh<3>>(&*mesh))
+    return check_mesh<3>(*solid, std::move(own), c, console);
+  return std::visit(
+      [&]<int D>(const SimplexMesh<D>& other) { return check_mesh<D>(other, {}, c, console); },
+      *mesh);
 }
 
 int run_adapt(const AdaptCommand& c, Console& console) {
   Result<AnyMesh> mesh = read_any(c.mesh, nullptr, console.progress().portion(0, 0));
   if (!mesh) return console.fail(of_input(mesh.error()));
-  if (const auto* flat = std::get_if<SimplexMesh<2>>(&*mesh))
-    return adapt_mesh<2>(*flat, c, console);
-  return adapt_mesh<3>(std::get<SimplexMesh<3>>(*mesh), c, console);
+  return std::visit([&]<int D>(const SimplexMesh<D>& m) { return adapt_mesh<D>(m, c, console); },
+                    *mesh);
 }
 
 int run_info(const InfoCommand& c, Console& console) {
