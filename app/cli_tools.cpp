@@ -227,7 +227,7 @@ int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& conso
   AdaptParams params;
   params.chord_tolerance = c.chord_tolerance;
   params.seed = c.seed;
-  Adapted<D> current{mesh, std::move(*metric)};
+  Adapted<D> current{mesh, std::move(*metric), {}};
   for (int i = 1; i <= c.iterations; ++i) {
     const Progress round = progress.portion((i - 1.0) / c.iterations, 1.0 * i / c.iterations,
                                             "adaption " + std::to_string(i));

@@ -24,6 +24,10 @@ class MetricCarrier {
         return map(metric, [](double l) { return 1 / std::sqrt(l); });
       case MetricMean::log:
         return map(metric, [](double l) { return std::log(l); });
+      case MetricMean::h: {
+        const Eigen::SelfAdjointEigenSolver<Mat<D>> solver(metric.full(), Eigen::EigenvaluesOnly);
+        return Packed<D>::from(Mat<D>::Identity() / std::sqrt(solver.eigenvalues()[D - 1]));
+      }
     }
     return metric;
   }
@@ -35,7 +39,8 @@ class MetricCarrier {
         const Mat<D> r = carried.full();
         return Packed<D>::from(r * r);
       }
-      case MetricMean::size: {
+      case MetricMean::size:
+      case MetricMean::h: {
         const Mat<D> r = carried.full().inverse();
         return Packed<D>::from(r * r);
       }
