@@ -5,6 +5,7 @@
 #include "app/cli_commands.h"
 #include "core/base/atomic_file.h"
 #include "core/io/medit.h"
+#include "core/io/words.h"
 #include "core/mesh/quality.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/mesh/slice.h"
@@ -123,20 +124,25 @@ fs::path numbered(const fs::path& output, std::size_t i) {
 
 /// The series as ParaView opens it, with the times.
 std::string collection(const std::vector<fs::path>& files, const std::vector<double>& times) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
-      "  <Collection>\n";
+  TextBuilder text;
+  text
+      << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
   for (std::size_t i = 0; i < files.size(); ++i) {
-    std::string name;
-    for (const char letter : files[i].filename().string())
-      name += letter == '&'   ? "&amp;"
-              : letter == '<' ? "&lt;"
-              : letter == '"' ? "&quot;"
-                              : std::string(1, letter);
-    text += "    <DataSet timestep=\"" + short_number(times[i], 17) + "\" part=\"0\" file=\"" +
-            name + "\"/>\n";
+    text << "    <DataSet timestep=\"" << times[i] << "\" part=\"0\" file=\"";
+    for (const char letter : files[i].filename().string()) {
+      if (letter == '&')
+        text << "&amp;";
+      else if (letter == '<')
+        text << "&lt;";
+      else if (letter == '"')
+        text << "&quot;";
+      else
+        text << letter;
+    }
+    text << "\"/>\n";
   }
-  return text + "  </Collection>\n</VTKFile>\n";
+  text << "  </Collection>\n</VTKFile>\n";
+  return text.text();
 }
 
 /// What a run wrote before it failed goes away.

@@ -185,7 +185,8 @@ void check_truncations(const std::filesystem::path& file, const char* boundary_s
     ASSERT_TRUE(write_file(file, whole.substr(0, length)).ok());
     const auto mesh = read_medit(file);
     // Only the last reference can be cut without a trace: every element is there.
-    if (mesh.ok()) EXPECT_EQ(std::get<SimplexMesh<D>>(*mesh).element_count(), factorial(D));
+    if (!mesh.ok()) continue;
+    EXPECT_EQ(std::get<SimplexMesh<D>>(*mesh).element_count(), std::size_t{factorial(D)}) << length;
   }
 }
 
