@@ -329,6 +329,13 @@ TEST_F(Cli, AHypercubeIsAdaptedCheckedAndSliced) {
   EXPECT_NE(series.find("timestep=\"0.3\" part=\"0\" file=\"at_0001.vtu\""), std::string::npos)
       << series;
 
+  // Medit has no names: the groups of both ends, which a slice has no facets of, are not missed.
+  ASSERT_EQ(run("slice cube.mesh --times 0.5 --metric uniform -o b.mesh"), 0) << err;
+  const auto solid = read_medit<3>(folder / "b_0000.mesh");
+  ASSERT_TRUE(solid.ok());
+  EXPECT_EQ(solid->groups, (Names{"ref 1", "ref 2", "ref 3", "ref 4", "ref 5", "ref 6"}));
+  EXPECT_TRUE(std::filesystem::exists(folder / "b_0000.sol"));
+
   // A plane through a 3D mesh.
   ASSERT_EQ(run("box --cells 2 -o solid.mesh"), 0) << err;
   ASSERT_EQ(run("slice solid.mesh --times 0.3 -o plane.mesh"), 0) << err;
