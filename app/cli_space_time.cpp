@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr double kMostElements = 1e7;  ///< of a box: a start mesh is coarse
+constexpr double kMostElements = 1e6;  ///< of a box: made at one go, in about a second
 
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
