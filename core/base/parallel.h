@@ -13,6 +13,12 @@
 
 namespace lamella {
 
+/// An arena of `threads` threads (0: all cores).
+inline tbb::task_arena thread_arena(int threads) {
+  const int cores = tbb::info::default_concurrency();
+  return tbb::task_arena(threads > 0 ? std::min(threads, cores) : cores);
+}
+
 /// Calls work(i) once for every i in [0, count), on `threads` threads (0: all cores), in no given
 /// order: each call must write only what belongs to i, so that the thread count changes nothing.
 /// Reports progress. Returns false when cancelled, some calls then being left out.
@@ -20,9 +26,7 @@ template <class Work>
 bool parallel_each(std::size_t count, int threads, const Progress& progress, Work&& work,
                    std::size_t grain = 64) {
   std::atomic<std::size_t> done{0};
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(threads > 0 ? std::min(threads, cores) : cores);
-  arena.execute([&] {
+  thread_arena(threads).execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
       if (progress.cancelled()) return;
       for (auto i = range.begin(); i != range.end(); ++i) work(i);

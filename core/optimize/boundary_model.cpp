@@ -189,7 +189,9 @@ BoundaryModel<D>::~BoundaryModel() = default;
 
 template <int D>
 BoundaryModel<D>::BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurface<D>* surface,
-                                double tolerance, double feature_angle)
+                                double tolerance, double feature_angle,
+                                const std::vector<std::int32_t>& frozen_groups,
+                                const std::vector<std::int32_t>& frozen_bodies)
     : tolerance_(tolerance) {
   ReferenceSurface<D> own;
   if constexpr (D < 4)
@@ -204,6 +206,17 @@ BoundaryModel<D>::BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurfa
     facet_tag_.push_back(it->second);
   }
   fixed_.assign(mesh.points.size(), 0);
+  frozen_tag_.assign(tags_.size(), 0);
+  for (std::size_t t = 0; t < tags_.size(); ++t)
+    frozen_tag_[t] = std::count(frozen_groups.begin(), frozen_groups.end(), tags_[t].group) > 0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    if (frozen_tag_[facet_tag_[f]])
+      for (NodeId n : mesh.facets[f]) fixed_[n] = 1;
+  frozen_body_.assign(mesh.bodies.size(), 0);
+  for (std::int32_t body : frozen_bodies) frozen_body_[body] = 1;
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+    if (frozen_body(mesh.element_body[e]))
+      for (NodeId n : mesh.elements[e]) fixed_[n] = 1;
   if constexpr (D == 4) return;
   if constexpr (D < 4) {
     if (!surface) surface = &own;

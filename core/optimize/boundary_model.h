@@ -19,8 +19,10 @@ class BoundaryModel {
  public:
   /// `surface` null: the boundary of `mesh` itself is the reference, with features where facets
   /// meet at more than `feature_angle` radians. `tolerance` is the chord tolerance in mm.
+  /// Facets of the frozen groups (ids) and elements of the frozen bodies keep their nodes.
   BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurface<D>* surface, double tolerance,
-                double feature_angle);
+                double feature_angle, const std::vector<std::int32_t>& frozen_groups = {},
+                const std::vector<std::int32_t>& frozen_bodies = {});
   ~BoundaryModel();
 
   struct Tag {
@@ -32,8 +34,14 @@ class BoundaryModel {
   const Tag& tag(std::int32_t t) const { return tags_[t]; }
   std::int32_t tag_of_facet(std::size_t f) const { return facet_tag_[f]; }
   bool hard(std::int32_t a, std::int32_t b) const;
-  bool fixed(NodeId n) const { return static_cast<std::size_t>(n) < fixed_.size() && fixed_[n]; }
+  /// [node of the mesh given] must stay where it is.
+  const std::vector<char>& fixed() const { return fixed_; }
   double tolerance() const { return tolerance_; }
+  /// Whether facets of the tag, or elements of the body, stay as they are.
+  bool frozen_tag(std::int32_t t) const { return frozen_tag_[t]; }
+  bool frozen_body(std::int32_t b) const {
+    return static_cast<std::size_t>(b) < frozen_body_.size() && frozen_body_[b];
+  }
 
   /// Nearest point of the surface; nothing when there is none within `within` mm.
   std::optional<Nearest<D>> nearest(const Vec<D>& x, double within) const;
@@ -61,6 +69,7 @@ class BoundaryModel {
   std::vector<Tag> tags_;
   std::vector<std::int32_t> facet_tag_;
   std::vector<char> fixed_;
+  std::vector<char> frozen_tag_, frozen_body_;
   std::vector<std::uint64_t> hard_pairs_;  // sorted (face, face)
   std::vector<Vec<D>> normals_;
   std::vector<std::int32_t> facet_face_;

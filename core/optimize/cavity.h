@@ -1,5 +1,8 @@
 #pragma once
 
+#include <limits>
+
+#include "core/optimize/adapt.h"
 #include "core/optimize/packed.h"
 #include "core/optimize/topology.h"
 
@@ -27,49 +30,89 @@ struct RealFace : CavityFace<D> {
   Vec<D> center;
   double normal2;        ///< |normal|^2
   PackedDual<D> edges;   ///< ((D+1)/D) times the sum of e e^T over the face's edges
-  Packed<D> metric_sum;  ///< sum of the nodal metrics
+  Packed<D> metric_sum;  ///< sum of what the nodes carry into the metric of an element
 };
 
-/// c(T)^2 with c of (3.7), the shape multiplied by `relax` (1: plain): the value the star compares.
-/// Negative for an ill oriented or flat element.
-template <int D>
-struct QualityKernel {
-  double relax2 = 1;
+/// The two numbers that the star compares. `quality` is c(T) of (3.7), the shape multiplied by the
+/// relaxation; `energy` is 1 / shape + w (h^D + h^-D - 2): smooth, 1 for the unit equilateral
+/// element, infinite for a flat one.
+struct Rating {
+  double quality = -1;
+  double energy = std::numeric_limits<double>::infinity();
+};
 
-  double operator()(const RealFace<D>& f, const Vec<D>& apex, const Packed<D>& apex_metric) const {
+/// h^D, given h^2.
+template <int D>
+double power_of_size(double h2) {
+  if constexpr (D == 2) return h2;
+  if constexpr (D == 3) return h2 * std::sqrt(h2);
+  return h2 * h2;
+}
+
+/// Rates the element {face, apex}. Negative quality for an ill oriented or flat one.
+template <int D>
+struct RatingKernel {
+  static constexpr double mean = 1.0 / (D + 1);
+  double relaxation = 1;    ///< of the shape
+  double size_weight = 1;   ///< w of the energy
+  MetricMean element_mean = MetricMean::m;
+  SizeAverage size_average = SizeAverage::l2;
+  const std::vector<Vec<D>>* points = nullptr;
+
+  /// Metric of the element, (3.2), (3.12) or (3.16), from the sum of what its nodes carry.
+  Packed<D> element_metric(const RealFace<D>& f, const Packed<D>& apex_carried) const {
+    Packed<D> m = f.metric_sum;
+    m += apex_carried;
+    for (double& c : m.c) c *= mean;
+    if (element_mean == MetricMean::m) [[likely]]
+      return m;
+    const Mat<D> r = element_mean == MetricMean::root ? m.full() : Mat<D>(m.full().inverse());
+    return Packed<D>::from(r * r);
+  }
+  /// Mean length of the edges in the metric, squared: what an L1 average takes for h^2.
+  double plain_size2(const RealFace<D>& f, const Vec<D>& apex, const Packed<D>& m) const {
+    double sum = 0;
+    for (int i = 0; i < D; ++i) {
+      const Vec<D>& p = (*points)[f.nodes[i]];
+      sum += std::sqrt(m.quad(apex - p));
+      for (int j = i + 1; j < D; ++j) sum += std::sqrt(m.quad((*points)[f.nodes[j]] - p));
+    }
+    sum *= 2.0 / (D * (D + 1));
+    return sum * sum;
+  }
+
+  Rating operator()(const RealFace<D>& f, const Vec<D>& apex, const Packed<D>& apex_carried) const {
     const Vec<D> w = apex - f.center;
     const double volume = f.normal.dot(w);
-    if (volume <= 0 || volume * volume <= 1e-22 * f.normal2 * w.squaredNorm()) return -1;
-    Packed<D> m = f.metric_sum;
-    m += apex_metric;
+    if (volume <= 0 || volume * volume <= 1e-22 * f.normal2 * w.squaredNorm()) return {};
+    const Packed<D> m = element_metric(f, apex_carried);
     PackedDual<D> e = f.edges;
     e.add_outer(D, w);
-    constexpr double mean = 1.0 / (D + 1);
-    const double h2 = trace_product(m, e) * (2.0 * mean / (D * (D + 1)));
-    double det_scale = 1, hd = 1;
-    for (int k = 0; k < D; ++k) {
-      det_scale *= mean;
-      hd *= h2;
-    }
-    constexpr double two_d = 1 << D;
-    const double shape2 = relax2 * two_d * mean * volume * volume * m.det() * det_scale / hd;
-    return std::min(shape2, std::min(hd, 1 / hd));
+    double h2 = trace_product(m, e) * (2.0 / (D * (D + 1)));
+    if (size_average == SizeAverage::l1) h2 = plain_size2(f, apex, m);
+    const double h = power_of_size<D>(h2);
+    const double inverse = 1 / h;
+    // |T|_M over the measure of the unit simplex.
+    const double v = volume * std::sqrt(m.det() * ((1 << D) * mean));
+    const double shape = v * inverse;
+    return {std::min(relaxation * shape, std::min(h, inverse)),
+            1 / shape + size_weight * (h + inverse - 2)};
   }
 };
 
 template <int D>
 void fill_real_face(RealFace<D>& f, const Topology<D>& topo, std::int32_t element, int place,
-                    const std::vector<Packed<D>>& metric) {
+                    const std::vector<Packed<D>>& carried) {
   f.element = element;
   f.place = place;
   f.nodes = opposite_facet<D>(topo.elements[element], place);
   std::array<Vec<D>, D> p;
   f.center.setZero();
-  f.metric_sum = metric[f.nodes[0]];
+  f.metric_sum = carried[f.nodes[0]];
   for (int k = 0; k < D; ++k) {
     p[k] = topo.points[f.nodes[k]];
     f.center += p[k];
-    if (k) f.metric_sum += metric[f.nodes[k]];
+    if (k) f.metric_sum += carried[f.nodes[k]];
   }
   f.center *= 1.0 / D;
   f.normal = -facet_normal<D>(p);

@@ -47,6 +47,18 @@ struct Packed {
     }
     return s;
   }
+  /// M v.
+  Vec<D> times(const Vec<D>& v) const {
+    Vec<D> r = Vec<D>::Zero();
+    for (int i = 0, k = 0; i < D; ++i) {
+      r[i] += c[k++] * v[i];
+      for (int j = i + 1; j < D; ++j, ++k) {
+        r[i] += c[k] * v[j];
+        r[j] += c[k] * v[i];
+      }
+    }
+    return r;
+  }
   double det() const {
     if constexpr (D == 2) {
       return c[0] * c[2] - c[1] * c[1];

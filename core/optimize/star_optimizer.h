@@ -7,25 +7,40 @@
 #include "core/optimize/boundary_model.h"
 #include "core/optimize/cavity.h"
 #include "core/optimize/metric_carrier.h"
+#include "core/optimize/work_mesh.h"
 
 namespace lamella {
 
-/// The working state of algorithm 3.1: cuts the cavity around a node or an edge and reconnects its
-/// boundary to the best vertex, in the order (3.9) of sorted qualities.
+/// By what the star chooses among local topologies.
+enum class Criterion {
+  order,  ///< the lexicographic order (3.9) of sorted qualities
+  energy  ///< the mean energy (cavity.h) of the elements: what is good on average
+};
+
+/// One pass over a block.
+struct SweepParams {
+  Criterion criterion = Criterion::order;
+  double relaxation = 1;      ///< weight of the shape in the quality
+  double split_above = 1.41;  ///< metric length above which an edge may get a node
+  double collapse_below = 0.71;  ///< metric length below which a node may join its neighbor
+  double good_enough = 0.7;  ///< c(T) above which elements are not reconnected
+  double attention = 2;      ///< c(T) above which nodes are left alone altogether
+};
+
+/// The working state of algorithm 3.1 on one block of the mesh: cuts the cavity around a node or an
+/// edge and reconnects its boundary to the best vertex.
 template <int D>
 class StarOptimizer {
  public:
-  StarOptimizer(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
-                const ReferenceSurface<D>* surface, const AdaptParams& params,
-                const MetricFunction<D>& metric_at, double tolerance);
+  StarOptimizer(Block<D> block, const BoundaryModel<D>& model, const AdaptParams& params,
+                const MetricFunction<D>& metric_at, double scale);
 
   /// One pass over the nodes and the edges they own whose surroundings changed since their last
   /// turn. Returns the number of operations; stops early when cancelled.
-  std::size_t sweep(const Progress& progress);
-  /// Shape weight of the quality; changing it forgets what has been processed.
-  void set_relaxation(double beta);
-  std::size_t node_count() const;
-  Adapted<D> result(const SimplexMesh<D>& original) const;
+  std::size_t sweep(const SweepParams& params, const Progress& progress);
+  const AdaptReport& counts() const { return counts_; }
+  /// The block as it is now, numbered without gaps.
+  Block<D> take();
 
  private:
   using Element = std::array<NodeId, D + 1>;
@@ -35,47 +50,82 @@ class StarOptimizer {
     NodeId node = 0;  ///< existing node, or 0 for a new or moved point
     Vec<D> point = Vec<D>::Zero();
     Packed<D> metric = Packed<D>::zero();
+    Packed<D> averaged = Packed<D>::zero();  ///< what elements average of it
   };
   struct RingNode {
     NodeId node;
     std::int32_t tags[2];
     int count;
   };
+  /// What the boundary says of a cavity.
+  struct BoundarySite {
+    bool boundary = false, on_feature = false;
+    Vec<D> anchor;                   ///< the point that is removed
+    const Vec<D>* second = nullptr;  ///< of an edge that is no feature: its other end
+    NodeId ends[2] = {0, 0};         ///< the neighbors along the feature
+    NodeId a = 0, b = 0;             ///< node or edge that is removed
+  };
 
+  void set_relaxation(double beta);
   bool process_node(NodeId s);
-  bool process_edge(NodeId s, NodeId n);
+  bool process_edge(NodeId s, NodeId n, bool is_long);
+  std::size_t improve_edges(NodeId s, std::uint32_t before);
+  bool movable(NodeId n) const { return !fixed_[n] && !locked(n); }
+  bool locked(NodeId n) const { return shared_[n] != 0; }
   void open_cavity(std::span<const std::int32_t> elements, NodeId a, NodeId b);
-  bool mixed_bodies() const { return mixed_bodies_; }
-  /// Evaluates the star of `apex`; true, with its qualities in trial_, when it beats best_.
+  void offer(const Apex& apex, const BoundarySite& site);
   bool beats(const Apex& apex);
   void start_from_current();
-  void accept_trial(const Apex& apex) {
-    std::swap(best_, trial_);
-    best_apex_ = apex;
-  }
+  Apex existing(NodeId v) const { return {v, topo_.points[v], metric_[v], averaged()[v]}; }
+  Apex new_point(const Vec<D>& x, const Packed<D>& metric) const;
   void replace_cavity(const Apex& apex, NodeId moved);
-  bool boundary_allows(const Apex& apex, const Vec<D>& anchor, const Vec<D>* flat_anchor,
-                       std::span<const NodeId> feature_ends);
-  bool follows_surface(const std::array<Vec<D>, D>& p, const Facet& nodes, NodeId replaced) const;
-  bool topology_allows(const Apex& apex, NodeId a, NodeId b) const;
-  void collect_ring(NodeId s);
-  std::optional<Apex> point_on_boundary(const Vec<D>& x, bool on_feature, double reach) const;
+  const Packed<D>& carried(NodeId n) const;
   Packed<D> metric_in_star(NodeId s, const Vec<D>& x) const;
-  double quality_of(std::int32_t e) const;
+  /// Squared length of an edge in the metric, the geometric mean of what its ends say.
+  double length2(NodeId a, NodeId b) const {
+    const Vec<D> e = topo_.points[b] - topo_.points[a];
+    return std::sqrt(metric_[a].quad(e) * metric_[b].quad(e));
+  }
+  Rating rating_of(std::int32_t e) const;
+  void grow_nodes();
   void release_if_unused(NodeId n);
 
+  const std::vector<Packed<D>>& averaged() const { return plain_ ? metric_ : own_averaged_; }
+
+  // In star_boundary.cpp.
+  bool node_site(NodeId s, BoundarySite& site);
+  bool edge_site(NodeId s, NodeId n, BoundarySite& site);
+  bool boundary_allows(const Apex& apex, const BoundarySite& site);
+  bool follows_surface(const std::array<Vec<D>, D>& p, const Facet& nodes, NodeId replaced) const;
+  bool topology_allows(const Apex& apex, const BoundarySite& site) const;
+  void collect_ring(NodeId s);
+  std::optional<Vec<D>> point_on_boundary(const Vec<D>& x, bool on_feature, double reach) const;
+  int free_directions(const BoundarySite& site, Mat<D>& basis) const;
+
+  // In star_smooth.cpp.
+  void offer_moves(NodeId s, const BoundarySite& site);
+  std::optional<Vec<D>> newton_step(NodeId s, const BoundarySite& site) const;
+
   Topology<D> topo_;
-  BoundaryModel<D> model_;
-  MetricCarrier<D> carrier_;
+  const BoundaryModel<D>& model_;
+  MetricCarrier<D> carrier_, averager_;
   std::uint64_t seed_;
-  MetricFunction<D> metric_function_;
-  QualityKernel<D> kernel_;
-  double flat_;                      ///< mm, below which a height counts as zero
-  std::vector<Packed<D>> metric_;    ///< [node]
-  std::vector<Packed<D>> carried_;   ///< [node]
-  std::vector<Vec<D>> asked_;        ///< [node] where the metric function was asked last
-  std::vector<double> quality_;      ///< [element] c^2; virtual: infinity
-  std::vector<std::uint32_t> done_;  ///< [node] clock of its last turn
+  const MetricFunction<D>& metric_function_;
+  RatingKernel<D> kernel_;
+  SweepParams sweep_;
+  AdaptReport counts_;
+  double flat_;                         ///< mm, below which a height counts as zero
+  std::vector<Packed<D>> metric_;       ///< [node]
+  mutable std::vector<Packed<D>> carried_;    ///< [node] what new nodes average of the metric
+  mutable std::vector<char> carried_known_;   ///< [node]
+  std::vector<Packed<D>> own_averaged_; ///< [node] what elements average, if not the metric itself
+  bool plain_;                          ///< elements average the metric itself
+  std::vector<char> dirty_;             ///< [node] as it came
+  std::vector<Vec<D>> asked_;           ///< [node] where the metric function was asked last
+  std::vector<char> fixed_;             ///< [node]
+  std::vector<NodeId> shared_;          ///< [node] global id of a locked node, else 0
+  std::vector<Rating> rating_;          ///< [element] virtual: infinite quality, no energy
+  std::vector<std::uint32_t> done_;     ///< [node] clock of its last turn
 
   // Scratch of the open cavity; kept to allocate nothing in the sweep.
   std::vector<std::int32_t> cavity_;
@@ -85,9 +135,17 @@ class StarOptimizer {
   std::vector<std::uint32_t> mark_;
   std::uint32_t mark_value_ = 0;
   std::vector<double> best_, trial_;
-  double best_worst_ = 0;
+  double best_worst_ = 0, trial_worst_ = 0;  ///< quality
+  double best_cost_ = 0, trial_cost_ = 0;    ///< energy above that of a typical element
+  double cavity_worst_ = 0;
   Apex best_apex_;
-  bool mixed_bodies_ = false;
+  bool found_ = false;
+  struct Birth {
+    Element nodes;
+    std::int32_t label;
+    Rating rating;
+  };
+  std::vector<Birth> births_;
   std::vector<RingNode> ring_;
   std::vector<std::int32_t> retag_;  ///< [virtual face] tag of the new facet
   std::vector<std::int32_t> best_retag_;

@@ -24,6 +24,30 @@ class NodeElements {
   }
   bool empty(NodeId n) const { return size_[n] == 0; }
 
+  /// The lists of all elements at once.
+  template <class Element>
+  void fill(std::size_t nodes, const std::vector<Element>& elements) {
+    begin_.assign(nodes, -1);
+    size_.assign(nodes, 0);
+    capacity_.assign(nodes, 0);
+    for (const Element& e : elements)
+      for (NodeId n : e) ++size_[n];
+    std::int32_t place = 0;
+    for (std::size_t n = 1; n < nodes; ++n) {
+      if (size_[n] == 0) continue;
+      capacity_[n] = static_cast<std::int32_t>(std::bit_ceil(static_cast<unsigned>(size_[n])));
+      capacity_[n] = std::max(capacity_[n], 16);
+      begin_[n] = place;
+      place += capacity_[n];
+      size_[n] = 0;
+    }
+    size_[0] = 0;
+    pool_.resize(place);
+    for (std::size_t e = 0; e < elements.size(); ++e)
+      for (NodeId n : elements[e])
+        if (n != 0) pool_[begin_[n] + size_[n]++] = static_cast<std::int32_t>(e);
+  }
+
   void add(NodeId n, std::int32_t element) {
     if (size_[n] == capacity_[n]) grow(n);
     pool_[begin_[n] + size_[n]++] = element;
@@ -81,15 +105,14 @@ struct Topology {
   NodeElements around;  ///< no list for node 0
   std::uint32_t clock = 1;
 
-  static Topology from(const SimplexMesh<D>& mesh) {
+  static Topology from(std::vector<Vec<D>> points, std::vector<Element> elements,
+                       std::vector<std::int32_t> label) {
     Topology t;
-    t.points = mesh.points;
-    t.around.resize(mesh.points.size());
-    t.elements.reserve(mesh.elements.size() + mesh.facets.size());
-    for (std::size_t e = 0; e < mesh.elements.size(); ++e)
-      t.add(mesh.elements[e], mesh.element_body[e]);
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
-      t.add(virtual_element(mesh.facets[f]), static_cast<std::int32_t>(f));
+    t.points = std::move(points);
+    t.elements = std::move(elements);
+    t.label = std::move(label);
+    t.birth.assign(t.elements.size(), t.clock);
+    t.around.fill(t.points.size(), t.elements);
     return t;
   }
 

@@ -1,0 +1,270 @@
+#include <algorithm>
+#include <limits>
+
+#include "core/optimize/star_optimizer.h"
+
+namespace lamella {
+namespace {
+
+/// Cosine below which a facet may not replace another: keeps ridges and folds.
+constexpr double facet_turn = 0.8;
+/// A facet must not look away from the surface it stands for.
+constexpr double surface_turn = 0.4;
+
+}  // namespace
+
+/// What the boundary says of the node; false when it must stay as it is.
+template <int D>
+bool StarOptimizer<D>::node_site(NodeId s, BoundarySite& site) {
+  site.a = s;
+  site.anchor = topo_.points[s];
+  site.boundary = !virtual_faces_.empty();
+  if (!site.boundary) return true;
+  collect_ring(s);
+  if constexpr (D == 2) return ring_.size() == 2 && !model_.hard(ring_[0].tags[0], ring_[1].tags[0]);
+  if constexpr (D == 3) {
+    int features = 0;
+    for (const auto& r : ring_) {
+      if (r.count == 2 && !model_.hard(r.tags[0], r.tags[1])) continue;
+      if (features < 2) site.ends[features] = r.node;
+      ++features;
+    }
+    site.on_feature = features == 2;
+    return features == 0 || features == 2;
+  }
+  return true;
+}
+
+/// What the boundary says of the edge; false when it must stay as it is.
+template <int D>
+bool StarOptimizer<D>::edge_site(NodeId s, NodeId n, BoundarySite& site) {
+  site.a = s;
+  site.b = n;
+  site.anchor = 0.5 * (topo_.points[s] + topo_.points[n]);
+  site.boundary = !virtual_faces_.empty();
+  for (auto e : cavity_)
+    if (topo_.is_virtual(e) ? model_.frozen_tag(topo_.label[e]) : model_.frozen_body(topo_.label[e]))
+      return false;
+  if (!site.boundary) return true;
+  site.second = &topo_.points[s];
+  // Around an edge of a surface two virtual elements, with two faces each.
+  if constexpr (D == 3)
+    site.on_feature = virtual_faces_.size() != 4 ||
+                      model_.hard(topo_.label[virtual_faces_[0].element],
+                                  topo_.label[virtual_faces_[2].element]);
+  return true;
+}
+
+template <int D>
+void StarOptimizer<D>::collect_ring(NodeId s) {
+  ring_.clear();
+  for (const auto& f : virtual_faces_) {
+    const std::int32_t tag = topo_.label[f.element];
+    for (NodeId n : f.nodes) {
+      if (n == 0 || n == s) continue;
+      auto it =
+          std::find_if(ring_.begin(), ring_.end(), [n](const RingNode& r) { return r.node == n; });
+      if (it == ring_.end()) {
+        ring_.push_back({n, {tag, tag}, 1});
+      } else {
+        if (it->count == 1) it->tags[1] = tag;
+        ++it->count;
+      }
+    }
+  }
+}
+
+template <int D>
+std::optional<Vec<D>> StarOptimizer<D>::point_on_boundary(const Vec<D>& x, bool on_feature,
+                                                          double reach) const {
+  if (!model_.has_surface()) return x;
+  if (on_feature) {
+    const auto p = model_.nearest_feature(x, reach);
+    if (!p) return std::nullopt;
+    return (*p - x).norm() > flat_ ? *p : x;
+  }
+  const auto p = model_.nearest(x, reach);
+  if (!p) return std::nullopt;
+  return p->distance2 > flat_ * flat_ ? p->point : x;
+}
+
+/// Orthonormal directions in which the node may move, as the first columns of `basis`; returns how
+/// many.
+template <int D>
+int StarOptimizer<D>::free_directions(const BoundarySite& site, Mat<D>& basis) const {
+  if (!site.boundary) {
+    basis.setIdentity();
+    return D;
+  }
+  Mat<D> normals = Mat<D>::Zero();
+  for (const auto& f : virtual_faces_) {
+    const Facet nodes = Topology<D>::facet_of(topo_.elements[f.element]);
+    std::array<Vec<D>, D> p;
+    for (int k = 0; k < D; ++k) p[k] = topo_.points[nodes[k]];
+    const Vec<D> n = facet_normal<D>(p);
+    const double length2 = n.squaredNorm();
+    if (length2 > 0) normals += n * n.transpose() / length2;
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat<D>> solver(normals);
+  basis = solver.eigenvectors();
+  if constexpr (D == 4) {
+    int free = 0;
+    while (free < D && solver.eigenvalues()[free] < 1e-9 * solver.eigenvalues()[D - 1]) ++free;
+    return free;
+  }
+  return site.on_feature ? 1 : D - 1;
+}
+
+/// Whether a lattice of points on a new facet (quarters of the way between its nodes) lies within
+/// the chord tolerance; the side that the facet shares with the old boundary is left out.
+template <int D>
+bool StarOptimizer<D>::follows_surface(const std::array<Vec<D>, D>& p, const Facet& nodes,
+                                       NodeId replaced) const {
+  constexpr int order = 4;
+  int apex = 0;
+  while (nodes[apex] != replaced) ++apex;
+  const double tol = model_.tolerance();
+  const Vec<D>& a = p[apex];
+  if constexpr (D == 2) {
+    for (int i = 1; i < order; ++i)
+      if (!model_.nearest((i * a + (order - i) * p[1 - apex]) / order, tol)) return false;
+  } else if constexpr (D == 3) {
+    const Vec<D>&b = p[(apex + 1) % 3], &c = p[(apex + 2) % 3];
+    for (int i = 1; i < order; ++i)
+      for (int j = 0; i + j <= order; ++j)
+        if (!model_.nearest((i * a + j * b + (order - i - j) * c) / order, tol)) return false;
+  }
+  return true;
+}
+
+/// The new boundary facets of an apex against the surface: nowhere turned, near the anchor
+/// that is removed, and within the chord tolerance of the original surface; so must the feature edges from
+/// the apex to its ends be. Fills retag_.
+template <int D>
+bool StarOptimizer<D>::boundary_allows(const Apex& apex, const BoundarySite& site) {
+  const Vec<D>& anchor = site.anchor;
+  const bool ends = site.ends[0] != 0;
+  const std::size_t count = virtual_faces_.size();
+  retag_.resize(count);
+  bool flat = true, one_tag = true, planar = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    retag_[i] = topo_.label[virtual_faces_[i].element];
+    one_tag = one_tag && retag_[i] == retag_[0];
+  }
+  const double tol = model_.tolerance();
+  if (ends) {
+    // The removed node must lie on the new feature line; facets alone do not tell, as all those on
+    // one side of the line may vanish.
+    double off2 = std::numeric_limits<double>::infinity();
+    for (NodeId n : site.ends) {
+      if (n == apex.node) continue;
+      const Vec<D> e = topo_.points[n] - apex.point;
+      const double t = std::clamp((anchor - apex.point).dot(e) / e.squaredNorm(), 0.0, 1.0);
+      off2 = std::min(off2, (anchor - apex.point - t * e).squaredNorm());
+    }
+    if (off2 > tol * tol) return false;
+    if (off2 > flat_ * flat_) flat = false;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& f = virtual_faces_[i];
+    if (apex.node != 0 && f.contains(apex.node)) continue;
+    const Element& old = topo_.elements[f.element];
+    const Facet nodes = Topology<D>::facet_of(old);
+    std::array<Vec<D>, D> p, q;
+    double size2 = 0;
+    for (int k = 0; k < D; ++k) {
+      p[k] = topo_.points[nodes[k]];
+      q[k] = nodes[k] == old[f.place] ? apex.point : p[k];
+      size2 = std::max({size2, (q[k] - q[0]).squaredNorm(), (p[k] - p[0]).squaredNorm()});
+    }
+    const Vec<D> before = facet_normal<D>(p);
+    const Vec<D> after = facet_normal<D>(q);
+    const double nb = before.norm(), na = after.norm();
+    double scale = 1;
+    for (int k = 0; k < D - 1; ++k) scale *= std::sqrt(size2);
+    if (na <= 1e-10 * scale) return false;
+    const bool known = nb > 1e-6 * scale;
+    const double turn = known ? before.dot(after) / (nb * na) : 1;
+    if (turn < facet_turn) return false;
+    const double height = std::abs(after.dot(anchor - apex.point)) / na;
+    double flat_height = height;
+    if (site.second)
+      flat_height = std::max(flat_height, std::abs(after.dot(*site.second - apex.point)) / na);
+    if (!known || flat_height > flat_) flat = false;
+    if (height > tol) return false;
+    for (int k = 0; k < D && planar; ++k) planar = model_.in_plane(retag_[i], q[k]);
+  }
+  // Flat facets over a curved face were tested at their own points only: new ones are tested again.
+  if (flat && ((one_tag && planar) || !model_.has_surface())) return true;
+  if (!model_.has_surface()) return false;
+
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& f = virtual_faces_[i];
+    if (apex.node != 0 && f.contains(apex.node)) continue;
+    const Element& old = topo_.elements[f.element];
+    const Facet nodes = Topology<D>::facet_of(old);
+    std::array<Vec<D>, D> q;
+    Vec<D> center = Vec<D>::Zero();
+    for (int k = 0; k < D; ++k) {
+      q[k] = nodes[k] == old[f.place] ? apex.point : topo_.points[nodes[k]];
+      center += q[k] / D;
+    }
+    const Vec<D> normal = facet_normal<D>(q).normalized();
+    const auto at = model_.nearest(center, tol);
+    if (!at) return false;
+    if (!flat && model_.normal(at->facet).dot(normal) < surface_turn) return false;
+    if (!one_tag) {
+      const std::int32_t t = model_.tag_on(retag_[i], at->facet);
+      if (!model_.hard(t, retag_[i])) retag_[i] = t;
+    }
+    if (!(flat && planar) && !follows_surface(q, nodes, old[f.place])) return false;
+  }
+  if (!flat && ends)
+    for (NodeId n : site.ends)
+      if (n != apex.node && !model_.nearest_feature(0.5 * (apex.point + topo_.points[n]), tol))
+        return false;
+  return true;
+}
+
+/// No boundary edge of the new star may exist elsewhere already: the boundary would touch itself.
+template <int D>
+bool StarOptimizer<D>::topology_allows(const Apex& apex, const BoundarySite& site) const {
+  if (apex.node == 0) return true;
+  // Part of its surroundings may lie in another block.
+  if (locked(apex.node)) return false;
+  for (auto e : topo_.around.of(apex.node)) {
+    if (!topo_.is_virtual(e)) continue;
+    const Element& nodes = topo_.elements[e];
+    const bool inside = Topology<D>::has(nodes, site.a) &&
+                        (site.b == 0 || Topology<D>::has(nodes, site.b));
+    if (inside) continue;
+    for (NodeId x : nodes) {
+      if (x == 0 || x == apex.node) continue;
+      for (const auto& f : virtual_faces_) {
+        if (f.contains(apex.node) || !f.contains(x)) continue;
+        // x is joined anew to the apex unless an old facet of the cavity already joins them.
+        bool joined = false;
+        for (const auto& g : virtual_faces_)
+          joined = joined || (Topology<D>::has(topo_.elements[g.element], x) &&
+                              Topology<D>::has(topo_.elements[g.element], apex.node));
+        if (!joined) return false;
+      }
+    }
+  }
+  return true;
+}
+
+#define LAMELLA_INSTANTIATE(D)                                                                     \
+  template bool StarOptimizer<D>::node_site(NodeId, BoundarySite&);                               \
+  template bool StarOptimizer<D>::edge_site(NodeId, NodeId, BoundarySite&);                       \
+  template std::optional<Vec<D>> StarOptimizer<D>::point_on_boundary(const Vec<D>&, bool, double) \
+      const;                                                                                      \
+  template int StarOptimizer<D>::free_directions(const BoundarySite&, Mat<D>&) const;             \
+  template bool StarOptimizer<D>::boundary_allows(const Apex&, const BoundarySite&);              \
+  template bool StarOptimizer<D>::topology_allows(const Apex&, const BoundarySite&) const;
+LAMELLA_INSTANTIATE(2)
+LAMELLA_INSTANTIATE(3)
+LAMELLA_INSTANTIATE(4)
+#undef LAMELLA_INSTANTIATE
+
+}  // namespace lamella
