@@ -220,29 +220,11 @@ void tell_iteration(int i, const CheckReport& check, const AdaptReport& r, Conso
   console.emit(dump(json));
 }
 
-/// Writes the adapted mesh: any format in 3D, Medit in 2D.
-template <int D>
-Result<void> write_adapted(const std::string& output, Adapted<D>&& adapted) {
-  if constexpr (D == 3) {
-    MeshState state;
-    state.mesh = std::move(adapted.mesh);
-    state.metric = std::move(adapted.metric);
-    state.quality = element_qualities<3>(state.mesh, state.metric);
-    Result<ExportCertificate> proof = export_mesh(output, state, Study{});
-    if (!proof) return proof.error();
-    return {};
-  } else {
-    if (Result<void> done = write_medit<D>(adapted.mesh, output); !done) return done;
-    return write_sol<D>(adapted.metric, fs::path(output).replace_extension(".sol"));
-  }
-}
-
 template <int D>
 int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& console) {
   const Progress progress = console.progress();
-  if (Result<void> known = check_export_name(c.output); !known) return console.fail(known.error());
-  if (D == 2 && fs::path(c.output).extension() != ".mesh")
-    return console.fail({Code::usage, "A 2D mesh is written as Medit only.", "Use OUT.mesh."});
+  if (Result<void> known = check_output_name(c.output, D); !known)
+    return console.fail(known.error());
   Result<AdaptParams> params = params_of<D>(c, mesh);
   if (!params) return console.fail(params.error());
   AskedMetric<D> asked(c, console);
@@ -280,7 +262,7 @@ int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& conso
     }
     tell_iteration(i, *report, current.report, console);
   }
-  if (Result<void> done = write_adapted<D>(c.output, std::move(current)); !done)
+  if (Result<void> done = write_any<D>(c.output, std::move(current.mesh), std::move(current.metric)); !done)
     return console.fail(done.error());
   console.say("wrote " + c.output);
   console.emit(dump({{"phase", "written"}, {"file", c.output}}));
@@ -298,9 +280,8 @@ int run_adapt(const AdaptCommand& c, Console& console) {
                   static_cast<std::size_t>(*c.threads));
   Result<AnyMesh> mesh = read_any(c.mesh, nullptr, console.progress().portion(0, 0));
   if (!mesh) return console.fail(of_input(mesh.error()));
-  if (const auto* flat = std::get_if<SimplexMesh<2>>(&*mesh))
-    return adapt_mesh<2>(*flat, c, console);
-  return adapt_mesh<3>(std::get<SimplexMesh<3>>(*mesh), c, console);
+  return std::visit([&]<int D>(const SimplexMesh<D>& m) { return adapt_mesh<D>(m, c, console); },
+                    *mesh);
 }
 
 }  // namespace lamella::cli

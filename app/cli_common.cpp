@@ -1,9 +1,14 @@
 #include "app/cli_common.h"
 
+#include <filesystem>
+
 #include "app/services.h"
+#include "core/mesh/quality.h"
 #include "core/metric/analytic.h"
 
 namespace lamella::cli {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -85,7 +90,41 @@ Json report_json(const CheckReport& r, bool with_metric) {
 
 template Result<MetricField<2>> metric_of(const SimplexMesh<2>&, const std::string&,
                                           const std::string&, MetricFunction<2>*);
+template Result<MetricField<4>> metric_of(const SimplexMesh<4>&, const std::string&,
+                                          const std::string&, MetricFunction<4>*);
 template Result<MetricField<3>> metric_of(const SimplexMesh<3>&, const std::string&,
                                           const std::string&, MetricFunction<3>*);
+
+Result<void> check_output_name(const std::string& output, int dimension) {
+  if (Result<void> known = check_export_name(output); !known) return known.error();
+  if (dimension != 3 && fs::path(output).extension() != ".mesh")
+    return Error{Code::usage, "A " + std::to_string(dimension) + "D mesh is written as Medit only.",
+                 "Use OUT.mesh."};
+  return {};
+}
+
+template <int D>
+Result<void> write_any(const std::string& output, SimplexMesh<D>&& mesh, MetricField<D>&& metric,
+                       const Progress& progress) {
+  if constexpr (D == 3) {
+    MeshState state;
+    state.mesh = std::move(mesh);
+    state.metric = std::move(metric);
+    if (!state.metric.empty()) state.quality = element_qualities<3>(state.mesh, state.metric);
+    const auto proof = export_mesh(output, state, Study{}, {}, progress);
+    if (!proof) return proof.error();
+    return {};
+  } else {
+    if (Result<void> done = write_medit<D>(mesh, output, progress); !done || metric.empty())
+      return done;
+    return write_sol<D>(metric, fs::path(output).replace_extension(".sol"), progress);
+  }
+}
+template Result<void> write_any(const std::string&, SimplexMesh<2>&&, MetricField<2>&&,
+                                const Progress&);
+template Result<void> write_any(const std::string&, SimplexMesh<3>&&, MetricField<3>&&,
+                                const Progress&);
+template Result<void> write_any(const std::string&, SimplexMesh<4>&&, MetricField<4>&&,
+                                const Progress&);
 
 }  // namespace lamella::cli

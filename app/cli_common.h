@@ -29,6 +29,13 @@ template <int D>
 Result<MetricField<D>> metric_of(const SimplexMesh<D>& mesh, const std::string& sol,
                                  const std::string& name, MetricFunction<D>* function);
 
+/// Whether a mesh of the dimension can be written to the file: only Medit knows others than 3.
+Result<void> check_output_name(const std::string& output, int dimension);
+/// Writes a mesh with its metric (may be empty): any format in 3D, else a .mesh with its .sol.
+template <int D>
+Result<void> write_any(const std::string& output, SimplexMesh<D>&& mesh, MetricField<D>&& metric,
+                       const Progress& progress = {});
+
 /// The findings of a check, without those about the metric where there is none.
 Json report_json(const CheckReport& report, bool with_metric);
 

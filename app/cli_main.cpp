@@ -56,7 +56,9 @@ int main(int argc, char** argv) {
                                  [&](const GenerateCommand& c) { return run_generate(c, console); },
                                  [&](const CheckCommand& c) { return run_check(c, console); },
                                  [&](const InfoCommand& c) { return run_info(c, console); },
-                                 [&](const SampleCommand& c) { return run_sample(c, console); }},
+                                 [&](const SampleCommand& c) { return run_sample(c, console); },
+                                 [&](const BoxCommand& c) { return run_box(c, console); },
+                                 [&](const SliceCommand& c) { return run_slice(c, console); }},
                       *command);
   } catch (const std::bad_alloc&) {
     return Console(json, interrupt.token())

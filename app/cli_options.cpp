@@ -23,6 +23,8 @@ Examples:
   lamella-cli mesh t.step -n 4 -o t.msh -o t.vtu
   lamella-cli check t.msh --layers 4
   lamella-cli adapt cube.mesh --metric polar-2 --iterations 5 -o adapted.mesh
+  lamella-cli box --dimension 4 --cells 4,4,4,8 --high 1,1,1,2 -o spacetime.mesh
+  lamella-cli slice spacetime.mesh --times 0.5,1,1.5 -o at.vtu
 )";
 
 std::string joined(const std::vector<std::string>& names) {
@@ -86,7 +88,7 @@ void add_conditioning(CLI::App* a, AdaptCommand& adapt) {
 }
 
 void add_adapt(CLI::App* a, AdaptCommand& adapt) {
-  a->add_option("MESH", adapt.mesh, "Medit .mesh (2D or 3D), .msh or .vtu")
+  a->add_option("MESH", adapt.mesh, "Medit .mesh (2D, 3D or 4D), .msh or .vtu")
       ->option_text(" ")
       ->required();
   a->add_option("-o,--output", adapt.output, "File to write; a .mesh gets its metric as .sol")
@@ -211,7 +213,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   add_json(m, mesh.json);
 
   AdaptCommand adapt;
-  CLI::App* a = app.add_subcommand("adapt", "Adapt a mesh to a metric, in 2D or 3D");
+  CLI::App* a = app.add_subcommand("adapt", "Adapt a mesh to a metric, in 2D, 3D or 4D");
   add_adapt(a, adapt);
 
   GenerateCommand generate;
@@ -229,7 +231,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
 
   CheckCommand check;
   CLI::App* c = app.add_subcommand("check", "Validity, quality, conformity and layers of a mesh");
-  c->add_option("MESH", check.mesh, "Medit .mesh (2D or 3D), .msh or .vtu")
+  c->add_option("MESH", check.mesh, "Medit .mesh (2D, 3D or 4D), .msh or .vtu")
       ->option_text(" ")
       ->required();
   auto* check_sol =
@@ -259,6 +261,46 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   s->add_option("-o,--output", sample.output, "STEP file to write [NAME.step]")
       ->option_text("FILE");
 
+  BoxCommand box;
+  CLI::App* b = app.add_subcommand("box", "Write a box cut into simplices, to start from");
+  b->add_option("--dimension", box.dimension, "2, 3 or 4 [3]")
+      ->option_text("D")
+      ->check(CLI::Range(2, 4));
+  b->add_option("--cells", box.cells, "Cells along every axis, or along each: N,N,..")
+      ->option_text("N,..")
+      ->required()
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  b->add_option("--low", box.low, "Lowest corner: one value, or one for each axis [0]")
+      ->option_text("X,..")
+      ->delimiter(',');
+  b->add_option("--high", box.high, "Highest corner [1]")->option_text("X,..")->delimiter(',');
+  b->add_option("-o,--output", box.output,
+                "File to write: .mesh (Medit); in 3D .msh, .vtu or .stl too")
+      ->option_text("FILE")
+      ->required();
+  add_json(b, box.json);
+
+  SliceCommand slice;
+  CLI::App* l = app.add_subcommand("slice", "Cross-sections of a 4D mesh at given times");
+  l->add_option("MESH", slice.mesh, "Medit .mesh (4D; a 3D one is cut at given z)")
+      ->option_text(" ")
+      ->required();
+  l->add_option("--times", slice.times, "Values of the last coordinate: T,T,..")
+      ->option_text("T,..")
+      ->required()
+      ->delimiter(',');
+  l->add_option("-o,--output", slice.output,
+                "OUT.vtu writes OUT_0000.vtu and so on, and OUT.pvd; .msh and .mesh too")
+      ->option_text("OUT")
+      ->required();
+  auto* slice_sol =
+      l->add_option("--sol", slice.sol, "Metric at the nodes, cut as well")->option_text("FILE");
+  auto* slice_metric =
+      l->add_option("--metric", slice.metric, "Analytic metric, as for adapt")->option_text("NAME");
+  slice_sol->excludes(slice_metric);
+  add_json(l, slice.json);
+
   app.footer(kFooter);  // after the subcommands, which would repeat it
   try {
     app.parse(argc, argv);
@@ -278,6 +320,8 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   if (g->parsed()) return generate;
   if (c->parsed()) return check;
   if (i->parsed()) return info;
+  if (b->parsed()) return box;
+  if (l->parsed()) return slice;
   return sample;
 }
 

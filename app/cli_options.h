@@ -67,8 +67,23 @@ struct SampleCommand {
   std::string name, output;
 };
 
+/// A box cut into simplices. Cells and corners: one value for all axes, or one for each.
+struct BoxCommand {
+  int dimension = 3;
+  std::vector<int> cells;
+  std::vector<double> low{0}, high{1};
+  std::string output;
+  bool json = false;
+};
+
+struct SliceCommand {
+  std::string mesh, output, sol, metric;
+  std::vector<double> times;
+  bool json = false;
+};
+
 using Command = std::variant<MeshCommand, AdaptCommand, GenerateCommand, CheckCommand, InfoCommand,
-                             SampleCommand>;
+                             SampleCommand, BoxCommand, SliceCommand>;
 
 /// Parses the command line. Help, version and errors of usage are printed here: the exit status is
 /// in `status` then, and nothing is returned.

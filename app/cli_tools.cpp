@@ -130,9 +130,11 @@ int run_check(const CheckCommand& c, Console& console) {
   MetricField<3> own;
   Result<AnyMesh> mesh = read_any(c.mesh, &own, console.progress().portion(0, 0));
   if (!mesh) return console.fail(of_input(mesh.error()));
-  if (const auto* flat = std::get_if<SimplexMesh<2>>(&*mesh))
-    return check_mesh<2>(*flat, {}, c, console);
-  return check_mesh<3>(std::get<SimplexMesh<3>>(*mesh), std::move(own), c, console);
+  if (const auto* solid = std::get_if<SimplexMesh<3>>(&*mesh))
+    return check_mesh<3>(*solid, std::move(own), c, console);
+  return std::visit(
+      [&]<int D>(const SimplexMesh<D>& other) { return check_mesh<D>(other, {}, c, console); },
+      *mesh);
 }
 
 int run_info(const InfoCommand& c, Console& console) {

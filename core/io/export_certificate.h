@@ -35,7 +35,8 @@ struct ExportCertificate {
 };
 
 /// Compares counts, names, areas and volumes, these to 1e-9 relative. `names` false leaves the
-/// names out, for formats that have no place for them.
+/// names out, and with them bodies and groups without entries, for formats that have no place for
+/// them.
 ExportCertificate certify(const std::string& file, const std::string& format,
                           const MeshSummary& written, const MeshSummary& read_back,
                           bool names = true, double tolerance = 1e-9);

@@ -23,10 +23,11 @@ struct Section {
 /// What a .mesh file holds that we use.
 struct Content {
   int dimension = 0;
-  std::vector<Vec<3>> points;
+  std::vector<std::array<double, 4>> points;  ///< as many coordinates as the dimension; else 0
   Section<2> edges;
   Section<3> triangles;
   Section<4> tetrahedra;
+  Section<5> pentatopes;
 };
 
 /// Reads the sections one word after the other; the first failure ends the reading.
@@ -102,7 +103,7 @@ class Reader {
   std::optional<Error> vertices(Content& out) {
     const auto n = count("vertices");
     if (!n) return n.error();
-    out.points.assign(*n, Vec<3>::Zero());
+    out.points.assign(*n, {});
     limit_ = static_cast<std::int64_t>(*n);
     for (std::size_t i = 0; i < *n; ++i) {
       if (cancelled(i)) return cancelled_error();
@@ -151,8 +152,8 @@ Result<int> read_header(Reader& reader, const std::filesystem::path& file) {
         "Check the type of the file."};
   if (words.next() != "Dimension") return reader.expected("the keyword Dimension");
   if (!words.read(dimension)) return reader.expected("the dimension");
-  if (dimension != 2 && dimension != 3)
-    return reader.error("the dimension is " + std::to_string(dimension) + " instead of 2 or 3.");
+  if (dimension < 2 || dimension > 4)
+    return reader.error("the dimension is " + std::to_string(dimension) + " instead of 2, 3 or 4.");
   return static_cast<int>(dimension);
 }
 
@@ -169,7 +170,8 @@ Result<Content> read_content(const std::filesystem::path& file, const Progress& 
     const std::string_view word = reader.words().next();
     std::optional<Error> error;
     if (word.empty() || word == "End") break;
-    const bool uses_nodes = word == "Edges" || word == "Triangles" || word == "Tetrahedra";
+    const bool uses_nodes =
+        word == "Edges" || word == "Triangles" || word == "Tetrahedra" || word == "Pentatopes";
     if (uses_nodes && !has_vertices)
       return reader.error("the section " + std::string(word) + " comes before Vertices.");
     if (word == "Vertices") {
@@ -181,6 +183,8 @@ Result<Content> read_content(const std::filesystem::path& file, const Progress& 
       error = reader.simplices("Triangles", content.triangles);
     } else if (word == "Tetrahedra") {
       error = reader.simplices("Tetrahedra", content.tetrahedra);
+    } else if (word == "Pentatopes") {
+      error = reader.simplices("Pentatopes", content.pentatopes);
     } else if (std::isalpha(static_cast<unsigned char>(word[0]))) {
       reader.skip();
     } else {
@@ -213,7 +217,7 @@ template <int D>
 SimplexMesh<D> assemble(const Content& content, Section<D + 1> elements, Section<D> facets) {
   SimplexMesh<D> mesh;
   mesh.points.reserve(content.points.size() + 1);
-  for (const Vec<3>& x : content.points) mesh.points.push_back(x.head<D>());
+  for (const auto& x : content.points) mesh.points.push_back(Eigen::Map<const Vec<D>>(x.data()));
   mesh.elements = std::move(elements.nodes);
   mesh.element_body = name_refs(elements.refs, mesh.bodies);
   const bool listed = !facets.nodes.empty();
@@ -241,6 +245,20 @@ std::optional<Error> repeated_node(const std::filesystem::path& file, const Sect
   }
   return {};
 }
+
+Error no_elements(const std::filesystem::path& file, const char* kind) {
+  return {Code::bad_input, file.string() + " has no " + kind + ".",
+          "Only simplices are read: convert hexahedra and quadrilaterals first."};
+}
+
+/// All nodes at the same z.
+bool is_planar(const Content& content) {
+  return std::all_of(content.points.begin(), content.points.end(),
+                     [&](const auto& x) { return x[2] == content.points[0][2]; });
+}
+
+/// Names of the sections by dimension: elements, and the boundary one below.
+constexpr std::array<const char*, 4> kSections = {"Edges", "Triangles", "Tetrahedra", "Pentatopes"};
 
 /// References for the names: the numbers in "ref r" if all names are such and distinct, else the
 /// positions from 1.
@@ -279,26 +297,29 @@ Result<AnyMesh> read_medit(const std::filesystem::path& file, const Progress& pr
   auto read = read_content(file, progress.portion(0, 0.8));
   if (!read) return read.error();
   Content content = std::move(*read);
-  if (auto error = repeated_node(file, content.tetrahedra, "Tetrahedra")) return *error;
-  const auto flat = [&] {
-    return std::all_of(content.points.begin(), content.points.end(),
-                       [&](const Vec<3>& x) { return x[2] == content.points[0][2]; });
-  };
   AnyMesh mesh;
-  if (content.dimension == 3 && !content.tetrahedra.nodes.empty()) {
-    mesh = assemble<3>(content, std::move(content.tetrahedra), std::move(content.triangles));
+  std::optional<Error> error;
+  if (content.dimension == 4) {
+    error = content.pentatopes.nodes.empty()
+                ? no_elements(file, "pentatopes")
+                : repeated_node(file, content.pentatopes, "Pentatopes");
+    if (!error)
+      mesh = assemble<4>(content, std::move(content.pentatopes), std::move(content.tetrahedra));
+  } else if (content.dimension == 3 && !content.tetrahedra.nodes.empty()) {
+    error = repeated_node(file, content.tetrahedra, "Tetrahedra");
+    if (!error)
+      mesh = assemble<3>(content, std::move(content.tetrahedra), std::move(content.triangles));
   } else if (content.triangles.nodes.empty()) {
-    return Error{
-        Code::bad_input,
-        file.string() + " has no " + (content.dimension == 3 ? "tetrahedra." : "triangles."),
-        "Only simplices are read: convert hexahedra and quadrilaterals first."};
-  } else if (content.dimension == 3 && !flat()) {
-    return Error{Code::bad_input, file.string() + " is a surface: it has triangles, no tetrahedra.",
-                 "Fill it first: lamella-cli generate."};
+    error = no_elements(file, content.dimension == 3 ? "tetrahedra" : "triangles");
+  } else if (content.dimension == 3 && !is_planar(content)) {
+    error =
+        Error{Code::bad_input, file.string() + " is a surface: it has triangles, no tetrahedra.",
+              "Fill it first: lamella-cli generate."};
   } else {
-    if (auto error = repeated_node(file, content.triangles, "Triangles")) return *error;
-    mesh = assemble<2>(content, std::move(content.triangles), std::move(content.edges));
+    error = repeated_node(file, content.triangles, "Triangles");
+    if (!error) mesh = assemble<2>(content, std::move(content.triangles), std::move(content.edges));
   }
+  if (error) return *error;
   progress.report(1);
   return mesh;
 }
@@ -314,7 +335,6 @@ Result<SimplexMesh<D>> read_medit(const std::filesystem::path& file, const Progr
 template <int D>
 Result<void> write_medit(const SimplexMesh<D>& mesh, const std::filesystem::path& file,
                          const Progress& progress) {
-  static_assert(D == 2 || D == 3);
   TextBuilder out;
   out << "MeshVersionFormatted 2\n\nDimension " << D << "\n\nVertices\n"
       << mesh.node_count() << '\n';
@@ -326,10 +346,10 @@ Result<void> write_medit(const SimplexMesh<D>& mesh, const std::filesystem::path
     for (int k = 0; k < D; ++k) out << mesh.points[i][k] << ' ';
     out << "0\n";
   }
-  if (!write_section(out, D == 2 ? "Triangles" : "Tetrahedra", mesh.elements, mesh.element_body,
-                     refs_of(mesh.bodies), progress) ||
-      !write_section(out, D == 2 ? "Edges" : "Triangles", mesh.facets, mesh.facet_group,
-                     refs_of(mesh.groups), progress))
+  if (!write_section(out, kSections[D - 1], mesh.elements, mesh.element_body, refs_of(mesh.bodies),
+                     progress) ||
+      !write_section(out, kSections[D - 2], mesh.facets, mesh.facet_group, refs_of(mesh.groups),
+                     progress))
     return cancelled_error();
   out << "\nEnd\n";
   progress.report(0.9);
@@ -391,7 +411,8 @@ Result<MetricField<D>> read_sol(const std::filesystem::path& file, std::size_t n
       if (!is_spd<D>(metric[i]))
         return reader.error(
             "the matrix of node " + std::to_string(i) + " is not positive definite.",
-            "The order of entries is m11 m12 m22 m13 m23 m33.");
+            std::string("The order of entries is m11 m12 m22") + (D > 2 ? " m13 m23 m33" : "") +
+                (D > 3 ? " m14 m24 m34 m44." : "."));
     }
   }
   progress.report(1);
@@ -401,7 +422,6 @@ Result<MetricField<D>> read_sol(const std::filesystem::path& file, std::size_t n
 template <int D>
 Result<void> write_sol(const MetricField<D>& metric, const std::filesystem::path& file,
                        const Progress& progress) {
-  static_assert(D == 2 || D == 3);
   TextBuilder out;
   out << "MeshVersionFormatted 2\n\nDimension " << D << "\n\nSolAtVertices\n"
       << (metric.empty() ? 0 : metric.size() - 1) << "\n1 3\n";
@@ -420,17 +440,24 @@ Result<void> write_sol(const MetricField<D>& metric, const std::filesystem::path
 
 template Result<SimplexMesh<2>> read_medit<2>(const std::filesystem::path&, const Progress&);
 template Result<SimplexMesh<3>> read_medit<3>(const std::filesystem::path&, const Progress&);
+template Result<SimplexMesh<4>> read_medit<4>(const std::filesystem::path&, const Progress&);
 template Result<void> write_medit<2>(const SimplexMesh<2>&, const std::filesystem::path&,
                                      const Progress&);
 template Result<void> write_medit<3>(const SimplexMesh<3>&, const std::filesystem::path&,
+                                     const Progress&);
+template Result<void> write_medit<4>(const SimplexMesh<4>&, const std::filesystem::path&,
                                      const Progress&);
 template Result<MetricField<2>> read_sol<2>(const std::filesystem::path&, std::size_t,
                                             const Progress&);
 template Result<MetricField<3>> read_sol<3>(const std::filesystem::path&, std::size_t,
                                             const Progress&);
+template Result<MetricField<4>> read_sol<4>(const std::filesystem::path&, std::size_t,
+                                            const Progress&);
 template Result<void> write_sol<2>(const MetricField<2>&, const std::filesystem::path&,
                                    const Progress&);
 template Result<void> write_sol<3>(const MetricField<3>&, const std::filesystem::path&,
+                                   const Progress&);
+template Result<void> write_sol<4>(const MetricField<4>&, const std::filesystem::path&,
                                    const Progress&);
 
 }  // namespace lamella

@@ -11,10 +11,12 @@
 namespace lamella {
 
 /// A mesh whose dimension only the file knows.
-using AnyMesh = std::variant<SimplexMesh<2>, SimplexMesh<3>>;
+using AnyMesh = std::variant<SimplexMesh<2>, SimplexMesh<3>, SimplexMesh<4>>;
 
 /// A Medit ASCII .mesh. Tetrahedra make it 3D with the Triangles as boundary; without any, the
-/// Triangles of a planar file are the elements and the Edges the boundary.
+/// Triangles of a planar file are the elements and the Edges the boundary. In Dimension 4, vertices
+/// have four coordinates and a reference; the section Pentatopes, five nodes and a reference, holds
+/// the elements and Tetrahedra the boundary.
 ///
 /// Nodes keep their numbers, used or not, so that a .sol file fits. The reference of an element
 /// names its body and that of a boundary face its group: reference r reads as the name "ref r", and
@@ -35,8 +37,9 @@ template <int D>
 Result<void> write_medit(const SimplexMesh<D>& mesh, const std::filesystem::path& file,
                          const Progress& progress = {});
 
-/// A nodal metric from a .sol file: sizes h (type 1, read as I/h^2) or metrics (type 3, in the
-/// order m11 m12 m22 m13 m23 m33). `nodes` is the node count of the mesh it belongs to.
+/// A nodal metric from a .sol file: sizes h (type 1, read as I/h^2) or metrics (type 3, the lower
+/// triangle row by row: m11 m12 m22 m13 m23 m33 m14 m24 m34 m44 in 4D, its beginning below).
+/// `nodes` is the node count of the mesh it belongs to.
 /// Errors: io, bad_input (not a .sol, truncated, other node count or dimension, a vector field, a
 /// value that is no metric), with the line or the node; cancelled.
 template <int D>

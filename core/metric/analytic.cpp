@@ -24,8 +24,10 @@ Metric<3> diagonal(double hx, double hy, double hz) {
       .asDiagonal();
 }
 
-/// Size that grows linearly from h0 on the plane t = 0.5 to 0.1 at a distance of 0.5 from it.
-double sheet(double h0, double t) { return h0 + (0.1 - h0) * std::abs(t - 0.5) / 0.5; }
+/// Size that grows linearly from h0 on the plane t = 0.5 to h at a distance of 0.5 from it.
+double sheet(double h0, double t, double h = 0.1) {
+  return h0 + (h - h0) * std::abs(t - 0.5) / 0.5;
+}
 
 /// Size along one side of George and Borouchaki's rectangle: from 1 down to 0.05 at t = 2, up by a
 /// factor of 20 until `middle`, down by a factor of 5 until `end`, then back to 1 over 2.
@@ -41,10 +43,13 @@ double borouchaki_y(double y) { return borouchaki(y, 4.5, 7); }
 using Values = std::map<std::string, double, std::less<>>;
 using Function3 = MetricFunction<3>;
 
+template <int D>
 struct Named {
   Values defaults;
-  Function3 (*make)(const Values&);
+  MetricFunction<D> (*make)(const Values&);
 };
+template <int D>
+using Table = std::vector<std::pair<std::string, Named<D>>>;
 
 /// polar-1 and polar-2: a cylinder around z whose sizes depend on the radius.
 Function3 polar(double h0, bool refine_around) {
@@ -70,8 +75,9 @@ Function3 thinbox(const Values& v, bool isotropic) {
   };
 }
 
-const std::vector<std::pair<std::string, Named>>& table() {
-  static const std::vector<std::pair<std::string, Named>> all = {
+/// The metrics of 3D, and of 2D as their block of x and y.
+const Table<3>& table3() {
+  static const Table<3> all = {
       {"uniform",
        {{{"h", 0.1}},
         [](const Values& v) -> Function3 {
@@ -109,6 +115,45 @@ const std::vector<std::pair<std::string, Named>>& table() {
   return all;
 }
 
+Metric<4> diagonal(double hx, double hy, double hz, double ht) {
+  return Vec<4>(eigenvalue_from_size(hx), eigenvalue_from_size(hy), eigenvalue_from_size(hz),
+                eigenvalue_from_size(ht))
+      .asDiagonal();
+}
+
+/// The metrics of space-time, x_3 = t.
+const Table<4>& table4() {
+  static const Table<4> all = {
+      {"uniform",
+       {{{"h", 0.1}},
+        [](const Values& v) -> MetricFunction<4> {
+          return [m = isotropic_metric<4>(v.at("h"))](const Vec<4>&) { return m; };
+        }}},
+      {"constaniso",
+       {{{"hx", 0.1}, {"hy", 0.1}, {"hz", 0.1}, {"ht", 0.1}},
+        [](const Values& v) -> MetricFunction<4> {
+          return [m = diagonal(v.at("hx"), v.at("hy"), v.at("hz"), v.at("ht"))](const Vec<4>&) {
+            return m;
+          };
+        }}},
+      {"tesseract-linear",
+       {{{"h0", 0.0025}},
+        [](const Values& v) -> MetricFunction<4> {
+          return [h0 = v.at("h0")](const Vec<4>& x) {
+            return diagonal(0.25, 0.25, 0.25, sheet(h0, x[3], 0.25));
+          };
+        }}},
+  };
+  return all;
+}
+
+template <int D>
+std::vector<std::string> names_of(const Table<D>& table) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) names.push_back(entry.first);
+  return names;
+}
+
 template <class Names>
 std::string listed(const Names& names) {
   std::string text;
@@ -142,14 +187,17 @@ std::optional<Error> set_value(std::string_view name, std::string_view item, Val
   return {};
 }
 
-Result<Function3> parse(std::string_view specification) {
+template <int D>
+Result<MetricFunction<D>> parse(std::string_view specification, const Table<D>& table,
+                                const std::string& dimension) {
   const std::size_t colon = specification.find(':');
   const std::string_view name = specification.substr(0, colon);
-  const auto it = std::find_if(table().begin(), table().end(),
+  const auto it = std::find_if(table.begin(), table.end(),
                                [&](const auto& entry) { return entry.first == name; });
-  if (it == table().end())
-    return Error{Code::usage, "There is no metric called '" + std::string(name) + "'.",
-                 "Known metrics: " + listed(metric_names()) + "."};
+  if (it == table.end())
+    return Error{Code::usage,
+                 "There is no metric called '" + std::string(name) + "' in " + dimension + ".",
+                 "Known metrics in " + dimension + ": " + listed(names_of(table)) + "."};
   Values values = it->second.defaults;
   if (colon != std::string_view::npos) {
     std::string_view rest = specification.substr(colon + 1);
@@ -210,11 +258,13 @@ MetricFunction<3> spherical_metric(const Vec<3>& origin, double h_r, double h_th
 
 template <int D>
 Result<MetricFunction<D>> named_metric(std::string_view specification) {
-  auto parsed = parse(specification);
-  if (!parsed) return parsed.error();
-  if constexpr (D == 3) {
-    return parsed;
+  if constexpr (D == 4) {
+    return parse(specification, table4(), "4D");
+  } else if constexpr (D == 3) {
+    return parse(specification, table3(), "3D");
   } else {
+    auto parsed = parse(specification, table3(), "2D");
+    if (!parsed) return parsed.error();
     return MetricFunction<2>([f = std::move(*parsed)](const Vec<2>& x) -> Metric<2> {
       return f(Vec<3>(x[0], x[1], 0)).topLeftCorner<2, 2>();
     });
@@ -223,8 +273,9 @@ Result<MetricFunction<D>> named_metric(std::string_view specification) {
 
 const std::vector<std::string>& metric_names() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const auto& entry : table()) all.push_back(entry.first);
+    std::vector<std::string> all = names_of(table3());
+    for (const std::string& name : names_of(table4()))
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
     return all;
   }();
   return names;
@@ -242,6 +293,7 @@ template MetricFunction<3> cartesian_metric<3>(const Mat<3>&, const Vec<3>&);
 template MetricFunction<4> cartesian_metric<4>(const Mat<4>&, const Vec<4>&);
 template Result<MetricFunction<2>> named_metric<2>(std::string_view);
 template Result<MetricFunction<3>> named_metric<3>(std::string_view);
+template Result<MetricFunction<4>> named_metric<4>(std::string_view);
 template MetricField<2> sample_metric<2>(const MetricFunction<2>&, const std::vector<Vec<2>>&);
 template MetricField<3> sample_metric<3>(const MetricFunction<3>&, const std::vector<Vec<3>>&);
 template MetricField<4> sample_metric<4>(const MetricFunction<4>&, const std::vector<Vec<4>>&);

@@ -36,11 +36,16 @@ MetricFunction<3> spherical_metric(const Vec<3>& origin, double h_r, double h_th
 /// - gb2d, gb2d-iso: George and Borouchaki's rectangle [0, 7] x [0, 9], and its isotropic form
 /// - thinbox, thinbox-iso: the box [0, 0.1] x [0, 1]^2 with the sizes of gb2d over s = 10 in its
 ///   plane and ht = 0.05 across
-/// In 2D, z = 0 and the block of x and y. Errors: usage (unknown name, listing the known ones;
-/// unknown key; a value that is not a positive number).
+/// In 2D, z = 0 and the block of x and y. In 4D, with t the fourth coordinate:
+/// - uniform: h = 0.1
+/// - constaniso: hx, hy, hz, ht = 0.1 along the axes
+/// - tesseract-linear: 0.25 along x, y and z; along t h0 = 0.0025 at t = 0.5, growing linearly to
+///   0.25 at 0 and 1
+/// Errors: usage (a name unknown in this dimension, listing the known ones; unknown key; a value
+/// that is not a positive number).
 template <int D>
 Result<MetricFunction<D>> named_metric(std::string_view specification);
-/// The names above, in that order.
+/// The names above, of every dimension, each once and in that order.
 const std::vector<std::string>& metric_names();
 
 /// The metric at every node, entry 0 the identity.

@@ -75,7 +75,8 @@ class Cli : public testing::Test {
 
 TEST_F(Cli, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(run("--help"), 0);
-  for (const std::string name : {"mesh", "adapt", "generate", "check", "info", "sample", "130"})
+  for (const std::string name :
+       {"mesh", "adapt", "generate", "check", "info", "sample", "box", "slice", "130"})
     EXPECT_NE(out.find(name), std::string::npos) << name;
   EXPECT_EQ(run("mesh --help"), 0);
   EXPECT_NE(out.find("--chord-tolerance"), std::string::npos);
@@ -104,7 +105,17 @@ TEST_F(Cli, WrongUsageIsStatus2AndWritesNothing) {
         "adapt a.mesh --metric uniform --max-anisotropy 0.5 -o b.mesh",
         "adapt a.mesh --metric uniform --memory -1 -o b.mesh",
         "sample no_such_part",
-        "check a.mesh --layers 0"}) {
+        "check a.mesh --layers 0",
+        "box -o a.mesh",
+        "box --cells 0 -o a.mesh",
+        "box --cells 2,2 -o a.mesh",
+        "box --dimension 5 --cells 1 -o a.mesh",
+        "box --cells 1 --low 1 -o a.mesh",
+        "box --cells 1000 -o a.mesh",
+        "box --cells 2 -o a.xyz",
+        "box --dimension 4 --cells 2 -o a.vtu",
+        "slice a.mesh -o b.vtu",
+        "slice a.mesh --times x -o b.vtu"}) {
     EXPECT_EQ(run(arguments), 2) << arguments << "\n" << err;
     EXPECT_FALSE(err.empty()) << arguments;
   }
@@ -409,6 +420,90 @@ TEST_F(Cli, ACancelledAdaptionWritesItsMesh) {
   EXPECT_TRUE(validate<3>(*mesh).ok());
   EXPECT_GT(mesh->node_count(), 1000u);
   EXPECT_TRUE(read_sol<3>(folder / "adapted.sol", mesh->node_count()).ok());
+}
+
+TEST_F(Cli, BoxesAreMadeInEveryDimension) {
+  ASSERT_EQ(run("box --dimension 2 --cells 3,4 --low -1 --high 1,3 -o a.mesh"), 0) << err;
+  ASSERT_EQ(run("box --cells 2 -o b.vtu"), 0) << err;
+  ASSERT_EQ(run("box --dimension 4 --cells 2,2,2,4 --high 1,1,1,2 -o c.mesh --json"), 0) << err;
+  EXPECT_EQ(lines().at(0)["elements"], 24 * 2 * 2 * 2 * 4);
+  for (const auto& [name, dimension, volume, boundary] :
+       {std::tuple{"a.mesh", 2, 8.0, 12.0}, {"b.vtu", 3, 1.0, 6.0}, {"c.mesh", 4, 2.0, 14.0}}) {
+    ASSERT_EQ(run(std::string("check ") + name + " --json"), 0) << err;
+    const json report = lines().at(0);
+    EXPECT_EQ(report["dimension"], dimension);
+    EXPECT_EQ(report["valid"], true);
+    EXPECT_NEAR(report["volume"], volume, 1e-12);
+    EXPECT_NEAR(report["boundary_area"], boundary, 1e-12);
+  }
+  // The sides are groups.
+  const auto box = read_medit<4>(folder / "c.mesh");
+  ASSERT_TRUE(box.ok());
+  EXPECT_EQ(box->groups.size(), 8u);
+}
+
+TEST_F(Cli, AHypercubeIsAdaptedCheckedAndSliced) {
+  ASSERT_EQ(run("box --dimension 4 --cells 1 -o cube.mesh"), 0) << err;
+  ASSERT_EQ(run("adapt cube.mesh --metric uniform:h=0.5 --iterations 2 -o a.mesh --json"), 0)
+      << err;
+  const json adapted = lines().at(1);
+  EXPECT_EQ(adapted["valid"], true);
+  EXPECT_NEAR(adapted["volume"], 1, 1e-9);
+  EXPECT_GT(adapted["unit_edges"], 0.8);
+  ASSERT_EQ(run("check a.mesh --sol a.sol --json"), 0) << err;
+  EXPECT_NEAR(lines().at(0)["quality"]["min"], adapted["quality"]["min"], 1e-9);
+  ASSERT_EQ(run("check a.mesh --metric tesseract-linear --json"), 0) << err;
+  EXPECT_EQ(run("check a.mesh --metric polar-1"), 2);
+
+  // The first and the last time go through nodes.
+  ASSERT_EQ(run("slice a.mesh --sol a.sol --times 0,0.3,1 -o at.vtu --json"), 0) << err;
+  const std::vector<json> told = lines();
+  ASSERT_EQ(told.size(), 4u);
+  for (int i = 0; i < 3; ++i) {
+    const std::string file = "at_000" + std::to_string(i) + ".vtu";
+    EXPECT_EQ(told[i]["file"], file);
+    EXPECT_NEAR(told[i]["volume"], 1, 1e-9);
+    EXPECT_NEAR(told[i]["boundary_area"], 6, 1e-9);
+    ASSERT_EQ(run("check " + file + " --json"), 0) << err;
+    const json report = lines().at(0);
+    EXPECT_EQ(report["valid"], true);
+    EXPECT_EQ(report["elements"], told[i]["elements"]);
+    EXPECT_TRUE(report.contains("quality")) << "the metric goes along";
+  }
+  const std::string series = read_file(folder / "at.pvd").value();
+  EXPECT_NE(series.find("timestep=\"0.3\" part=\"0\" file=\"at_0001.vtu\""), std::string::npos)
+      << series;
+
+  // Medit has no names: the groups of both ends, which a slice has no facets of, are not missed.
+  ASSERT_EQ(run("slice cube.mesh --times 0.5 --metric uniform -o b.mesh"), 0) << err;
+  const auto solid = read_medit<3>(folder / "b_0000.mesh");
+  ASSERT_TRUE(solid.ok());
+  EXPECT_EQ(solid->groups, (Names{"ref 1", "ref 2", "ref 3", "ref 4", "ref 5", "ref 6"}));
+  EXPECT_TRUE(std::filesystem::exists(folder / "b_0000.sol"));
+
+  // A plane through a 3D mesh.
+  ASSERT_EQ(run("box --cells 2 -o solid.mesh"), 0) << err;
+  ASSERT_EQ(run("slice solid.mesh --times 0.3 -o plane.mesh"), 0) << err;
+  ASSERT_EQ(run("check plane_0000.mesh --json"), 0) << err;
+  EXPECT_EQ(lines().at(0)["dimension"], 2);
+  EXPECT_NEAR(lines().at(0)["volume"], 1, 1e-12);
+}
+
+TEST_F(Cli, SlicesThatFailLeaveNothing) {
+  ASSERT_EQ(run("box --dimension 4 --cells 1 -o cube.mesh"), 0) << err;
+  ASSERT_EQ(run("box --dimension 2 --cells 1 -o flat.mesh"), 0) << err;
+  write("garbage.mesh", "garbage");
+  const Names before = folder.names();
+  EXPECT_EQ(run("slice cube.mesh --times 0.5,7 -o at.vtu"), 2);
+  EXPECT_NE(err.find("from 0 to 1"), std::string::npos) << err;
+  EXPECT_EQ(run("slice cube.mesh --times 0.5,7 --metric uniform -o at.mesh"), 2);
+  EXPECT_EQ(run("slice cube.mesh --times 0.5 --metric linear -o at.vtu"), 2);
+  EXPECT_EQ(run("slice cube.mesh --times 0.5 -o at.stl"), 2);
+  EXPECT_EQ(run("slice flat.mesh --times 0.5 -o at.vtu"), 2);
+  EXPECT_EQ(run("slice cube.mesh --times 0.5 --sol no.sol -o at.vtu"), 3);
+  EXPECT_EQ(run("slice garbage.mesh --times 0.5 -o at.vtu"), 3);
+  EXPECT_EQ(run("slice missing.mesh --times 0.5 -o at.vtu"), 3);
+  EXPECT_EQ(folder.names(), before);
 }
 
 TEST_F(Cli, ASampleBringsAStudyOfAllItsBodies) {

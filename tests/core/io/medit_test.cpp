@@ -63,6 +63,35 @@ const char kSquare[] =
 TEST_F(MeditTest, MeshesComeBackBitForBit) {
   round_trip<2>(two_body_box<2>(4));
   round_trip<3>(two_body_box<3>(2));
+  round_trip<4>(two_body_box<4>(2));
+}
+
+TEST_F(MeditTest, PentatopesAreTheElementsOf4D) {
+  const std::string head =
+      "MeshVersionFormatted 2\nDimension 4\nVertices\n5\n0 0 0 0 1\n1 0 0 0 1\n";
+  const std::string points = head + "0 1 0 0 1\n0 0 1 0 1\n0 0 0 1 1\n";
+  const auto mesh =
+      read_medit<4>(text(points + "Tetrahedra\n1\n2 3 4 5 9\nPentatopes\n1\n1 2 3 4 5 7\nEnd\n"));
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_TRUE(validate(*mesh).ok());
+  EXPECT_EQ(mesh->points[5], Vec<4>::Unit(3));
+  EXPECT_EQ(mesh->facets.size(), 5u);
+  EXPECT_EQ(mesh->bodies, (std::vector<std::string>{"ref 7"}));
+  EXPECT_EQ(mesh->groups, (std::vector<std::string>{"ref 0", "ref 9"}));
+  EXPECT_EQ(std::count(mesh->facet_group.begin(), mesh->facet_group.end(), 1), 1);
+
+  expect_refused(head, Code::bad_input, "truncated");
+  expect_refused(points + "Tetrahedra\n1\n2 3 4 5 9\nEnd\n", Code::bad_input, "no pentatopes");
+  expect_refused(points + "Pentatopes\n1\n1 2 3 4 6 7\n", Code::bad_input,
+                 "node 6 of Pentatopes 1 is out of range");
+  expect_refused(points + "Pentatopes\n1\n1 2 3 4 4 7\n", Code::bad_input, "same node twice");
+  expect_refused(points + "Pentatopes\n1\n1 2 3 4 5\n", Code::bad_input, "truncated");
+  expect_refused("MeshVersionFormatted 2\nDimension 4\nPentatopes\n1\n1 2 3 4 5 0\n",
+                 Code::bad_input, "before Vertices");
+  // As many words as a 3D file has: the shift is noticed.
+  expect_refused("MeshVersionFormatted 2\nDimension 4\nVertices\n2\n0 0 0 1\n1 0 0 1\nEnd\n",
+                 Code::bad_input, "'End' where");
+  EXPECT_FALSE(read_medit<3>(text(points + "Pentatopes\n1\n1 2 3 4 5 7\nEnd\n")).ok());
 }
 
 TEST_F(MeditTest, NamesThatAreNoReferencesAreNumberedFromOne) {
@@ -128,7 +157,8 @@ TEST_F(MeditTest, RefusesWithOneClearSentence) {
   expect_refused(" \n # only a comment\n", Code::bad_input, "empty");
   expect_refused("solid cube\n", Code::bad_input, "not a Medit file");
   expect_refused(std::string("\1\0\0\0\3\0\0\0", 8), Code::bad_input, "binary");
-  expect_refused("MeshVersionFormatted 2\nDimension 5\n", Code::bad_input, "5 instead of 2 or 3");
+  expect_refused("MeshVersionFormatted 2\nDimension 5\n", Code::bad_input,
+                 "5 instead of 2, 3 or 4");
   expect_refused("MeshVersionFormatted 2\nDimension 3\nEnd\n", Code::bad_input, "no vertices");
   expect_refused(head + "4\n0 0 0 0\n1 0 0", Code::bad_input, "truncated");
   expect_refused(head + "4\n0 0 0 0\n1 0 0 0\n0 x 0 0\n", Code::bad_input, "line 7: 'x'");
@@ -146,17 +176,23 @@ TEST_F(MeditTest, RefusesWithOneClearSentence) {
   EXPECT_FALSE(read_medit<3>(text(kSquare)).ok());
 }
 
-TEST_F(MeditTest, EveryTruncationIsRefusedOrLosesOnlyOptionalParts) {
-  ASSERT_TRUE(write_medit(unit_box<3>(1), path("box.mesh")).ok());
-  const std::string whole = *read_file(path("box.mesh"));
-  const std::size_t triangles = whole.find("Triangles");
-  for (std::size_t length = 0; length < triangles; ++length) {
-    const auto mesh = read_medit(text(whole.substr(0, length)));
-    if (mesh.ok()) {
-      // Only the last reference can be cut without a trace: every tetrahedron is there.
-      EXPECT_EQ(std::get<SimplexMesh<3>>(*mesh).element_count(), 6u) << length;
-    }
+template <int D>
+void check_truncations(const std::filesystem::path& file, const char* boundary_section) {
+  ASSERT_TRUE(write_medit(unit_box<D>(1), file).ok());
+  const std::string whole = *read_file(file);
+  const std::size_t end = whole.find(boundary_section);
+  for (std::size_t length = 0; length < end; ++length) {
+    ASSERT_TRUE(write_file(file, whole.substr(0, length)).ok());
+    const auto mesh = read_medit(file);
+    // Only the last reference can be cut without a trace: every element is there.
+    if (!mesh.ok()) continue;
+    EXPECT_EQ(std::get<SimplexMesh<D>>(*mesh).element_count(), std::size_t{factorial(D)}) << length;
   }
+}
+
+TEST_F(MeditTest, EveryTruncationIsRefusedOrLosesOnlyOptionalParts) {
+  check_truncations<3>(path("box.mesh"), "Triangles");
+  check_truncations<4>(path("box.mesh"), "Tetrahedra");
 }
 
 TEST_F(MeditTest, FailingToWriteLeavesNothingBehind) {
@@ -186,6 +222,7 @@ void check_sol(const std::filesystem::path& file) {
 TEST_F(MeditTest, MetricsComeBackBitForBit) {
   check_sol<2>(path("a.sol"));
   check_sol<3>(path("b.sol"));
+  check_sol<4>(path("c.sol"));
 }
 
 TEST_F(MeditTest, MetricEntriesAreInMeditOrder) {
@@ -193,6 +230,10 @@ TEST_F(MeditTest, MetricEntriesAreInMeditOrder) {
   m << 11, 2, 3, 2, 22, 4, 3, 4, 33;
   ASSERT_TRUE(write_sol<3>({Metric<3>::Identity(), m}, path("a.sol")).ok());
   EXPECT_NE(read_file(path("a.sol"))->find("1 3\n11 2 22 3 4 33\n"), std::string::npos);
+  Metric<4> m4;
+  m4 << 11, 2, 3, 5, 2, 22, 4, 6, 3, 4, 33, 7, 5, 6, 7, 44;
+  ASSERT_TRUE(write_sol<4>({Metric<4>::Identity(), m4}, path("a.sol")).ok());
+  EXPECT_NE(read_file(path("a.sol"))->find("1 3\n11 2 22 3 4 33 5 6 7 44\n"), std::string::npos);
 }
 
 TEST_F(MeditTest, ScalarSizesBecomeIsotropicMetrics) {

@@ -145,5 +145,13 @@ TEST(Certificate, TellsWhatDiffers) {
   EXPECT_GT(proof.worst_difference, 1e-8);
 }
 
+TEST(Certificate, AGroupWithoutFacetsLeavesNoTraceWhereThereAreNoNames) {
+  const SimplexMesh<3> mesh = test::box_mesh(2, 2, 1, true);
+  SimplexMesh<3> other = mesh;
+  other.groups.push_back("empty");
+  EXPECT_FALSE(certify("f", "x", summarize(other), summarize(mesh)).agrees);
+  EXPECT_TRUE(certify("f", "x", summarize(other), summarize(mesh), false).agrees);
+}
+
 }  // namespace
 }  // namespace lamella

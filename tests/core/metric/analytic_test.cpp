@@ -131,12 +131,35 @@ TEST(NamedMetric, ThinBoxScalesTheRectangle) {
 TEST(NamedMetric, In2DIsTheBlockOfThePlane) {
   for (const std::string& name : metric_names()) {
     const auto flat = named_metric<2>(name);
-    ASSERT_TRUE(flat.ok());
+    ASSERT_EQ(flat.ok(), name != "tesseract-linear") << name;
+    if (!flat) continue;
     const Vec<2> x(0.31, 0.47);
     EXPECT_EQ((*flat)(x), (Metric<2>(named(name)(Vec<3>(x[0], x[1], 0)).topLeftCorner<2, 2>())));
     EXPECT_TRUE(is_spd<2>((*flat)(x)));
   }
-  EXPECT_EQ(metric_names().size(), 9u);
+  EXPECT_EQ(metric_names().size(), 10u);
+}
+
+TEST(NamedMetric, In4DTheLastAxisIsTime) {
+  const auto along = [](const std::string& name, const Vec<4>& x) {
+    const auto metric = named_metric<4>(name);
+    EXPECT_TRUE(metric.ok()) << name;
+    Vec<4> h;
+    for (int k = 0; k < 4; ++k) h[k] = size_along<4>(*metric, x, Vec<4>::Unit(k));
+    return h;
+  };
+  const Vec<4> x(0.1, 0.9, 0.2, 0.5);
+  EXPECT_LT((along("uniform:h=0.3", x) - Vec<4>::Constant(0.3)).norm(), 1e-12);
+  EXPECT_LT((along("constaniso:hy=1,ht=0.01", x) - Vec<4>(0.1, 1, 0.1, 0.01)).norm(), 1e-12);
+  EXPECT_LT((along("tesseract-linear", x) - Vec<4>(0.25, 0.25, 0.25, 0.0025)).norm(), 1e-12);
+  for (const double t : {0.0, 1.0})
+    EXPECT_NEAR(along("tesseract-linear", Vec<4>(0, 0, 0, t))[3], 0.25, 1e-12);
+  EXPECT_NEAR(along("tesseract-linear", Vec<4>(0, 0, 0, 0.75))[3], 0.0025 + 0.2475 / 2, 1e-12);
+  EXPECT_NEAR(along("tesseract-linear:h0=0.05", x)[3], 0.05, 1e-12);
+  const auto refused = named_metric<4>("polar-1");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, Code::usage);
+  EXPECT_NE(refused.error().hint.find("uniform, constaniso, tesseract-linear"), std::string::npos);
 }
 
 TEST(NamedMetric, RefusesWhatItDoesNotKnow) {
