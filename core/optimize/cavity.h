@@ -59,6 +59,10 @@ struct RatingKernel {
   SizeAverage size_average = SizeAverage::l2;
   const std::vector<Vec<D>>* points = nullptr;
 
+  /// (3.2) and (3.4), the fast case.
+  bool plain() const {
+    return element_mean == MetricMean::m && size_average == SizeAverage::l2;
+  }
   /// Metric of the element, (3.2), (3.12) or (3.16), from the sum of what its nodes carry.
   Packed<D> element_metric(const RealFace<D>& f, const Packed<D>& apex_carried) const {
     Packed<D> m = f.metric_sum;

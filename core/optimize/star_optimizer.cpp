@@ -180,8 +180,7 @@ void StarOptimizer<D>::open_cavity(std::span<const std::int32_t> elements, NodeI
           f.place = k;
           virtual_faces_.push_back(f);
         } else {
-          faces_.emplace_back();
-          fill_real_face(faces_.back(), topo_, e, k, averaged());
+          faces_.add(topo_, e, k, averaged());
         }
       } else if (n != 0 && mark_[n] != mark_value_) {
         mark_[n] = mark_value_;
@@ -217,31 +216,35 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
   trial_.clear();
   trial_worst_ = infinity;
   trial_cost_ = 0;
-  if (sweep_.criterion == Criterion::energy) {
-    const double floor = std::min(cavity_worst_, floor_quality);
-    // What is still to come costs at least 1 - typical each.
-    const double limit = best_cost_ - least_gain +
-                         (typical_energy<D> - 1) * static_cast<double>(faces_.size());
-    double sum = 0;
-    std::size_t count = 0;
-    for (const auto& f : faces_) {
-      if (apex.node != 0 && f.contains(apex.node)) continue;
-      const Rating r = kernel_(f, apex.point, apex.averaged);
-      if (r.quality < floor) return false;
-      trial_worst_ = std::min(trial_worst_, r.quality);
-      sum += r.energy - 1;
-      if (sum > limit) return false;
-      ++count;
+  typename FaceBatch<D>::Rates rates;
+  const bool by_energy = sweep_.criterion == Criterion::energy;
+  const double floor =
+      by_energy ? std::min(cavity_worst_, floor_quality) : std::max(best_worst_, 0.0);
+  // What is still to come costs at least 1 - typical each.
+  const double limit =
+      best_cost_ - least_gain + (typical_energy<D> - 1) * static_cast<double>(faces_.size());
+  double sum = 0;
+  int count = 0;
+  for (int g = 0; g < faces_.groups(); ++g) {
+    faces_.rate(g, kernel_, apex.point, apex.averaged, rates);
+    const int first = g * FaceBatch<D>::width;
+    const int lanes = std::min(FaceBatch<D>::width, faces_.size() - first);
+    for (int l = 0; l < lanes; ++l) {
+      if (apex.node != 0 && faces_[first + l].contains(apex.node)) continue;
+      if (rates.quality[l] < floor) return false;
+      trial_worst_ = std::min(trial_worst_, rates.quality[l]);
+      if (by_energy) {
+        sum += rates.energy[l] - 1;
+        ++count;
+      } else {
+        trial_.push_back(rates.quality[l]);
+      }
     }
-    trial_cost_ = sum + (1 - typical_energy<D>) * static_cast<double>(count);
-    return trial_cost_ < best_cost_ - least_gain;
+    if (by_energy && sum > limit) return false;
   }
-  for (const auto& f : faces_) {
-    if (apex.node != 0 && f.contains(apex.node)) continue;
-    const double q = kernel_(f, apex.point, apex.averaged).quality;
-    if (q < best_worst_ || q < 0) return false;
-    trial_worst_ = std::min(trial_worst_, q);
-    trial_.push_back(q);
+  if (by_energy) {
+    trial_cost_ = sum + (1 - typical_energy<D>) * count;
+    return trial_cost_ < best_cost_ - least_gain;
   }
   if (trial_worst_ != best_worst_) return true;
   // Same worst element: compare the sorted lists, the shorter one padded with +infinity.
@@ -280,14 +283,12 @@ const Packed<D>& StarOptimizer<D>::carried(NodeId n) const {
 
 /// Metric at a point of the star of s, interpolated in the element that holds it.
 template <int D>
-Packed<D> StarOptimizer<D>::metric_in_star(NodeId s, const Vec<D>& x) const {
+Packed<D> StarOptimizer<D>::metric_in_star(NodeId s, const Vec<D>& x) {
   double best = -infinity;
-  const RealFace<D>* in = nullptr;
+  const CavityFace<D>* in = nullptr;
   Vec<D> best_weights = Vec<D>::Zero();
   const Vec<D> shift = x - topo_.points[s];
   for (const auto& f : faces_) {
-    const double volume = f.normal.dot(topo_.points[s] - f.center);
-    if (volume <= 0) continue;
     // x = s + sum w_k (p_k - s): solve for the weights of the face's nodes.
     Mat<D> a;
     for (int k = 0; k < D; ++k) a.col(k) = topo_.points[f.nodes[k]] - topo_.points[s];
@@ -407,6 +408,18 @@ void StarOptimizer<D>::grow_nodes() {
   mark_.resize(size, 0);
 }
 
+/// Ratings of the elements {face, apex} of all faces into rates_.
+template <int D>
+void StarOptimizer<D>::rate_all(const Apex& apex) {
+  rates_.clear();
+  typename FaceBatch<D>::Rates rates;
+  for (int g = 0; g < faces_.groups(); ++g) {
+    faces_.rate(g, kernel_, apex.point, apex.averaged, rates);
+    for (int l = 0; l < FaceBatch<D>::width; ++l)
+      rates_.push_back({rates.quality[l], rates.energy[l]});
+  }
+}
+
 /// Puts the star of the apex in place of the cavity. `moved`: the node that takes the apex' point,
 /// 0 to make a new node where the apex is none.
 template <int D>
@@ -440,17 +453,20 @@ void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
     for (auto e : cavity_) topo_.touch[e] = topo_.clock;
     if (far)
       for (auto e : cavity_) topo_.birth[e] = topo_.clock;
-    for (const auto& f : faces_) rating_[f.element] = kernel_(f, apex.point, apex.averaged);
+    rate_all(apex);
+    for (int i = 0; i < faces_.size(); ++i) rating_[faces_[i].element] = rates_[i];
     for (std::size_t i = 0; i < virtual_faces_.size(); ++i)
       topo_.label[virtual_faces_[i].element] = best_retag_[i];
     return;
   }
   births_.clear();
-  for (const auto& f : faces_) {
+  rate_all(apex);
+  for (int i = 0; i < faces_.size(); ++i) {
+    const auto& f = faces_[i];
     if (f.contains(v)) continue;
     Element nodes = topo_.elements[f.element];
     nodes[f.place] = v;
-    births_.push_back({nodes, topo_.label[f.element], kernel_(f, apex.point, apex.averaged)});
+    births_.push_back({nodes, topo_.label[f.element], rates_[i]});
   }
   for (std::size_t i = 0; i < virtual_faces_.size(); ++i) {
     const auto& f = virtual_faces_[i];

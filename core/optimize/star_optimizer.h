@@ -5,7 +5,7 @@
 #include "core/base/progress.h"
 #include "core/optimize/adapt.h"
 #include "core/optimize/boundary_model.h"
-#include "core/optimize/cavity.h"
+#include "core/optimize/face_batch.h"
 #include "core/optimize/metric_carrier.h"
 #include "core/optimize/work_mesh.h"
 
@@ -90,7 +90,7 @@ class StarOptimizer {
   Apex new_point(const Vec<D>& x, const Packed<D>& metric) const;
   void replace_cavity(const Apex& apex, NodeId moved);
   const Packed<D>& carried(NodeId n) const;
-  Packed<D> metric_in_star(NodeId s, const Vec<D>& x) const;
+  Packed<D> metric_in_star(NodeId s, const Vec<D>& x);
   /// Squared length of an edge in the metric, the geometric mean of what its ends say.
   double length2(NodeId a, NodeId b) const {
     const Vec<D> e = topo_.points[b] - topo_.points[a];
@@ -98,6 +98,7 @@ class StarOptimizer {
   }
   bool longest(NodeId s, NodeId n, double limit2) const;
   Rating rating_of(std::int32_t e) const;
+  void rate_all(const Apex& apex);
   void grow_nodes();
   void release_if_unused(NodeId n);
 
@@ -115,7 +116,7 @@ class StarOptimizer {
 
   // In star_smooth.cpp.
   void offer_moves(NodeId s, const BoundarySite& site);
-  std::optional<Vec<D>> newton_step(NodeId s, const BoundarySite& site) const;
+  std::optional<Vec<D>> newton_step(NodeId s, const BoundarySite& site);
 
   Topology<D> topo_;
   const BoundaryModel<D>& model_;
@@ -141,7 +142,7 @@ class StarOptimizer {
 
   // Scratch of the open cavity; kept to allocate nothing in the sweep.
   std::vector<std::int32_t> cavity_;
-  std::vector<RealFace<D>> faces_;
+  FaceBatch<D> faces_;
   std::vector<CavityFace<D>> virtual_faces_;
   std::vector<NodeId> link_;
   std::vector<std::uint32_t> mark_;
@@ -159,6 +160,7 @@ class StarOptimizer {
     Rating rating;
   };
   std::vector<Birth> births_;
+  std::vector<Rating> rates_;  ///< [face], and some behind the last
   std::vector<RingNode> ring_;
   std::vector<std::int32_t> retag_;  ///< [virtual face] tag of the new facet
   std::vector<std::int32_t> best_retag_;

@@ -15,48 +15,16 @@ constexpr double short_move2 = 0.01;
 /// One step of Newton's method on the energy of the star, along the boundary for a boundary node.
 /// The metric of the node is held. Nothing where the node is at its best already.
 template <int D>
-std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId s, const BoundarySite& site) const {
-  constexpr double p = 0.5 * D;
-  constexpr double size_factor = 2.0 / (D * (D + 1));
-  const Vec<D>& x = topo_.points[s];
+std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId s, const BoundarySite& site) {
   const Packed<D>& own = averaged()[s];
-  const double w = kernel_.size_weight;
-  Vec<D> gradient = Vec<D>::Zero();
-  Packed<D> hessian = Packed<D>::zero(), convex = Packed<D>::zero();
-  for (const auto& f : faces_) {
-    const Packed<D> m = kernel_.element_metric(f, own);
-    const Vec<D> r = x - f.center;
-    PackedDual<D> edges = f.edges;
-    edges.add_outer(D, r);
-    const double size = trace_product(m, edges) * size_factor;
-    const double scale = std::sqrt(m.det() * ((1 << D) * RatingKernel<D>::mean));
-    const double v = f.normal.dot(r) * scale;
-    if (!(v > 0)) return std::nullopt;
-    const double a = power_of_size<D>(size);
-    const double inv_s = 1 / size, inv_v = 1 / v, inv_a = 1 / a;
-    const double by_size = p * inv_s * (a * inv_v + w * (a - inv_a));
-    const double by_volume = -a * inv_v * inv_v;
-    const double ss = inv_s * inv_s * (p * (p - 1) * a * (inv_v + w) + w * p * (p + 1) * inv_a);
-    const double vv = 2 * a * inv_v * inv_v * inv_v;
-    const double sv = -p * a * inv_s * inv_v * inv_v;
-    const double c = 2 * size_factor * D;
-    const Vec<D> u = c * m.times(r);
-    const Vec<D> k = scale * f.normal;
-    gradient += by_size * u + by_volume * k;
-    // sum of by_size c m + ss u u^T + sv (u k^T + k u^T) + vv k k^T
-    const double curve = c * std::max(by_size, 0.1 * p * inv_s * a * inv_v);
-    for (int i = 0, j = 0; i < D; ++i)
-      for (int l = i; l < D; ++l, ++j) {
-        const double stiff = curve * m.c[j] + vv * k[i] * k[l];
-        convex.c[j] += stiff;
-        hessian.c[j] += stiff + ss * u[i] * u[l] + sv * (u[i] * k[l] + k[i] * u[l]);
-      }
-  }
+  const auto [gradient, hessian, convex, sound] =
+      faces_.derivatives(kernel_, topo_.points[s], own);
+  if (!sound) return std::nullopt;
   Mat<D> basis;
   const int free = free_directions(site, basis);
   if (free == 0) return std::nullopt;
   Vec<D> step;
-  const auto solve = [&](const Packed<D>& h) {
+  const auto solve = [&, &gradient = gradient](const Packed<D>& h) {
     if (free == D) {
       const Eigen::LLT<Mat<D>> llt(h.full());
       if (llt.info() != Eigen::Success) return false;
@@ -129,7 +97,7 @@ void StarOptimizer<D>::offer_moves(NodeId s, const BoundarySite& site) {
 
 #define LAMELLA_INSTANTIATE(D)                                                          \
   template std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId,                  \
-                                                               const BoundarySite&) const; \
+                                                               const BoundarySite&);       \
   template void StarOptimizer<D>::offer_moves(NodeId, const BoundarySite&);
 LAMELLA_INSTANTIATE(2)
 LAMELLA_INSTANTIATE(3)

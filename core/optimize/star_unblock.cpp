@@ -14,8 +14,9 @@ std::size_t StarOptimizer<D>::open_blocking(const Progress& progress) {
   const std::size_t before = counts_.splits;
   const auto count = static_cast<NodeId>(on_wall.size());
   const auto insert = [&](const Apex& apex) {
-    for (const auto& f : faces_)
-      if (kernel_(f, apex.point, apex.averaged).quality <= 0) return;
+    rate_all(apex);
+    for (int i = 0; i < faces_.size(); ++i)
+      if (rates_[i].quality <= 0) return;
     replace_cavity(apex, 0);
     ++counts_.splits;
   };
@@ -83,10 +84,8 @@ void StarOptimizer<D>::open_pair(std::int32_t e, std::int32_t other, const Facet
   virtual_faces_.clear();
   for (std::int32_t i : cavity_)
     for (int k = 0; k <= D; ++k)
-      if (std::find(face.begin(), face.end(), topo_.elements[i][k]) != face.end()) {
-        faces_.emplace_back();
-        fill_real_face(faces_.back(), topo_, i, k, averaged());
-      }
+      if (std::find(face.begin(), face.end(), topo_.elements[i][k]) != face.end())
+        faces_.add(topo_, i, k, averaged());
 }
 
 #define LAMELLA_INSTANTIATE(D) \

@@ -1,0 +1,321 @@
+#include "core/optimize/face_batch.h"
+
+#include <algorithm>
+
+// The same source for processors with and without wide vectors, chosen when the program starts.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define LAMELLA_VECTOR __attribute__((target_clones("arch=x86-64-v3", "default")))
+#else
+#define LAMELLA_VECTOR
+#endif
+#define LAMELLA_INLINE inline __attribute__((always_inline))
+
+namespace lamella {
+namespace {
+
+template <int D>
+using Group = typename FaceBatch<D>::Group;
+constexpr int width = 4;
+/// Four numbers, worked on at once; the compiler maps them onto what the processor has.
+using Quad = double __attribute__((vector_size(width * sizeof(double)), may_alias));
+
+LAMELLA_INLINE Quad load(const double (&lanes)[width]) {
+  return *reinterpret_cast<const Quad*>(lanes);
+}
+LAMELLA_INLINE void store(double* lanes, Quad q) { *reinterpret_cast<Quad*>(lanes) = q; }
+LAMELLA_INLINE Quad root(Quad q) {
+  Quad r;
+  for (int l = 0; l < width; ++l) r[l] = std::sqrt(q[l]);
+  return r;
+}
+LAMELLA_INLINE Quad least(Quad a, Quad b) { return a < b ? a : b; }
+
+/// Of a symmetric matrix, upper triangle row by row.
+template <int D>
+LAMELLA_INLINE Quad determinant(const Quad* m) {
+  if constexpr (D == 2) {
+    return m[0] * m[2] - m[1] * m[1];
+  } else if constexpr (D == 3) {
+    return m[0] * (m[3] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[2]) +
+           m[2] * (m[1] * m[4] - m[3] * m[2]);
+  } else {
+    // By the 2 x 2 minors of the upper and the lower two rows.
+    const Quad s0 = m[0] * m[4] - m[1] * m[1], s1 = m[0] * m[5] - m[1] * m[2];
+    const Quad s2 = m[0] * m[6] - m[1] * m[3], s3 = m[1] * m[5] - m[4] * m[2];
+    const Quad s4 = m[1] * m[6] - m[4] * m[3], s5 = m[2] * m[6] - m[5] * m[3];
+    const Quad c5 = m[7] * m[9] - m[8] * m[8], c4 = m[5] * m[9] - m[6] * m[8];
+    const Quad c3 = m[5] * m[8] - m[6] * m[7], c2 = m[2] * m[9] - m[3] * m[8];
+    const Quad c1 = m[2] * m[8] - m[3] * m[7], c0 = m[2] * m[6] - m[3] * m[5];
+    return s0 * c5 - s1 * c4 + s2 * c3 + s3 * c2 - s4 * c1 + s5 * c0;
+  }
+}
+
+/// What depends on the apex in four elements: h^2, D! times the measure, and the factor that makes
+/// it the measure in the metric over that of the unit simplex.
+template <int D>
+struct Shapes {
+  Quad w[D], metric[Packed<D>::size], size, volume, scale;
+};
+
+template <int D>
+LAMELLA_INLINE void shapes(const Group<D>& g, const double* apex, const double* carried,
+                           Shapes<D>& s) {
+  constexpr double mean = 1.0 / (D + 1);
+  for (int k = 0; k < D; ++k) s.w[k] = apex[k] - load(g.center[k]);
+  for (int k = 0; k < Packed<D>::size; ++k) s.metric[k] = mean * (load(g.metric[k]) + carried[k]);
+  s.volume = load(g.normal[0]) * s.w[0];
+  for (int k = 1; k < D; ++k) s.volume += load(g.normal[k]) * s.w[k];
+  Quad trace = {};
+  for (int i = 0, k = 0; i < D; ++i)
+    for (int j = i; j < D; ++j, ++k)
+      trace += s.metric[k] * (load(g.edges[k]) + (i == j ? D : 2.0 * D) * (s.w[i] * s.w[j]));
+  s.size = trace * (2.0 / (D * (D + 1)));
+  s.scale = root(determinant<D>(s.metric) * ((1 << D) * mean));
+}
+
+template <int D>
+LAMELLA_INLINE Quad power(Quad h2) {
+  if constexpr (D == 2) return h2;
+  if constexpr (D == 3) return h2 * root(h2);
+  return h2 * h2;
+}
+
+template <int D>
+LAMELLA_INLINE void rate_group(const Group<D>& g, const double* apex, const double* carried,
+                               double relaxation, double size_weight, double* quality,
+                               double* energy) {
+  Shapes<D> s;
+  shapes<D>(g, apex, carried, s);
+  const Quad h = power<D>(s.size), inverse = 1 / h, measure = s.volume * s.scale;
+  const Quad q = least(relaxation * (measure * inverse), least(h, inverse));
+  const Quad e = h / measure + size_weight * (h + inverse - 2);
+  Quad w2 = s.w[0] * s.w[0];
+  for (int k = 1; k < D; ++k) w2 += s.w[k] * s.w[k];
+  // Flat within rounding, or ill oriented.
+  const auto sound =
+      (s.volume > 0) & (s.volume * s.volume > 1e-22 * (load(g.normal2) * w2));
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  store(quality, sound ? q : Quad{-1, -1, -1, -1});
+  store(energy, sound ? e : Quad{infinity, infinity, infinity, infinity});
+}
+
+template <int D>
+LAMELLA_INLINE bool derive_group(const Group<D>& g, const double* apex, const double* carried,
+                                 double weight, double (*gradient)[width],
+                                 double (*hessian)[width], double (*convex)[width]) {
+  constexpr double p = 0.5 * D, c = 4.0 / (D + 1);
+  Shapes<D> s;
+  shapes<D>(g, apex, carried, s);
+  const Quad measure = s.volume * s.scale, a = power<D>(s.size);
+  const Quad inv_s = 1 / s.size, inv_v = 1 / measure, inv_a = 1 / a;
+  const Quad by_size = p * inv_s * (a * inv_v + weight * (a - inv_a));
+  const Quad by_volume = -a * inv_v * inv_v;
+  const Quad ss =
+      inv_s * inv_s * (p * (p - 1) * a * (inv_v + weight) + weight * p * (p + 1) * inv_a);
+  const Quad vv = 2 * a * inv_v * inv_v * inv_v;
+  const Quad sv = -p * a * inv_s * inv_v * inv_v;
+  const Quad floor = 0.1 * p * inv_s * a * inv_v;
+  const Quad curve = c * (by_size > floor ? by_size : floor);
+  Quad u[D], n[D];
+  for (int i = 0; i < D; ++i) {
+    Quad r = s.metric[Packed<D>::index(0, i)] * s.w[0];
+    for (int j = 1; j < D; ++j)
+      r += s.metric[Packed<D>::index(i < j ? i : j, i < j ? j : i)] * s.w[j];
+    u[i] = c * r;
+    n[i] = s.scale * load(g.normal[i]);
+    store(gradient[i], load(gradient[i]) + by_size * u[i] + by_volume * n[i]);
+  }
+  // by_size c M + ss u u^T + sv (u n^T + n u^T) + vv n n^T
+  for (int i = 0, k = 0; i < D; ++i)
+    for (int j = i; j < D; ++j, ++k) {
+      const Quad stiff = curve * s.metric[k] + vv * n[i] * n[j];
+      store(convex[k], load(convex[k]) + stiff);
+      store(hessian[k],
+            load(hessian[k]) + stiff + ss * u[i] * u[j] + sv * (u[i] * n[j] + n[i] * u[j]));
+    }
+  const auto sound = measure > 0;
+  return sound[0] & sound[1] & sound[2] & sound[3];
+}
+
+/// Normals, centers and sums over the edges of four triangles.
+LAMELLA_INLINE void triangles(Group<3>& g) {
+  Quad a[3], b[3], d[3], n[3];
+  for (int k = 0; k < 3; ++k) {
+    const Quad p0 = load(g.points[0][k]), p1 = load(g.points[1][k]), p2 = load(g.points[2][k]);
+    a[k] = p1 - p0;
+    b[k] = p2 - p0;
+    d[k] = p2 - p1;
+    store(g.center[k], (p0 + p1 + p2) * (1.0 / 3));
+  }
+  n[0] = a[2] * b[1] - a[1] * b[2];
+  n[1] = a[0] * b[2] - a[2] * b[0];
+  n[2] = a[1] * b[0] - a[0] * b[1];
+  for (int k = 0; k < 3; ++k) store(g.normal[k], n[k]);
+  store(g.normal2, n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (int i = 0, k = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j, ++k)
+      store(g.edges[k],
+            (i == j ? 4.0 / 3 : 8.0 / 3) * (a[i] * a[j] + b[i] * b[j] + d[i] * d[j]));
+}
+
+LAMELLA_VECTOR void triangles_of(Group<3>& g) { triangles(g); }
+
+#define LAMELLA_DIMENSION(D)                                                                      \
+  LAMELLA_VECTOR void rate_lanes(const Group<D>& g, const double* apex, const double* carried,    \
+                                 double relaxation, double weight, double* quality,               \
+                                 double* energy) {                                                \
+    rate_group<D>(g, apex, carried, relaxation, weight, quality, energy);                         \
+  }                                                                                               \
+  LAMELLA_VECTOR bool derive_lanes(const Group<D>& g, const double* apex, const double* carried,  \
+                                   double weight, double (*gradient)[width],                      \
+                                   double (*hessian)[width], double (*convex)[width]) {           \
+    return derive_group<D>(g, apex, carried, weight, gradient, hessian, convex);                  \
+  }
+LAMELLA_DIMENSION(2)
+LAMELLA_DIMENSION(3)
+LAMELLA_DIMENSION(4)
+#undef LAMELLA_DIMENSION
+
+}  // namespace
+
+template <int D>
+void FaceBatch<D>::add(const Topology<D>& topo, std::int32_t element, int place,
+                       const std::vector<Packed<D>>& carried) {
+  const int i = size(), lane = i % width, group = i / width;
+  if (static_cast<std::size_t>(group) >= groups_.size()) groups_.resize(group + 1);
+  CavityFace<D>& f = faces_.emplace_back();
+  f.element = element;
+  f.place = place;
+  f.nodes = opposite_facet<D>(topo.elements[element], place);
+  Group& g = groups_[group];
+  const Packed<D>* m[D];
+  for (int k = 0; k < D; ++k) {
+    const Vec<D>& x = topo.points[f.nodes[k]];
+    for (int d = 0; d < D; ++d) g.points[k][d][lane] = x[d];
+    m[k] = &carried[f.nodes[k]];
+  }
+  for (int j = 0; j < packed; ++j) {
+    double sum = m[0]->c[j];
+    for (int k = 1; k < D; ++k) sum += m[k]->c[j];
+    g.metric[j][lane] = sum;
+  }
+}
+
+template <int D>
+void FaceBatch<D>::derive(int group) {
+  for (; derived_ <= group; ++derived_) {
+    Group& g = groups_[derived_];
+    for (int l = size() - derived_ * width; l < width; ++l) {
+      for (int k = 0; k < D; ++k)
+        for (int d = 0; d < D; ++d) g.points[k][d][l] = g.points[k][d][0];
+      for (int k = 0; k < packed; ++k) g.metric[k][l] = g.metric[k][0];
+    }
+    if constexpr (D == 3) {
+      triangles_of(g);
+    } else {
+      for (int l = 0; l < width; ++l) {
+        std::array<Vec<D>, D> p;
+        Vec<D> center = Vec<D>::Zero();
+        for (int k = 0; k < D; ++k) {
+          for (int d = 0; d < D; ++d) p[k][d] = g.points[k][d][l];
+          center += p[k] / D;
+        }
+        const Vec<D> normal = -facet_normal<D>(p);
+        PackedDual<D> edges = PackedDual<D>::zero();
+        for (int i = 0; i < D; ++i)
+          for (int j = i + 1; j < D; ++j) edges.add_outer((D + 1.0) / D, Vec<D>(p[j] - p[i]));
+        g.normal2[l] = normal.squaredNorm();
+        for (int d = 0; d < D; ++d) {
+          g.center[d][l] = center[d];
+          g.normal[d][l] = normal[d];
+        }
+        for (int k = 0; k < packed; ++k) g.edges[k][l] = edges.c[k];
+      }
+    }
+  }
+}
+
+template <int D>
+RealFace<D> FaceBatch<D>::real(int i) {
+  const int group = i / width, l = i % width;
+  derive(group);
+  const Group& g = groups_[group];
+  RealFace<D> f;
+  static_cast<CavityFace<D>&>(f) = faces_[i];
+  for (int d = 0; d < D; ++d) {
+    f.normal[d] = g.normal[d][l];
+    f.center[d] = g.center[d][l];
+  }
+  f.normal2 = g.normal2[l];
+  for (int k = 0; k < packed; ++k) {
+    f.edges.c[k] = g.edges[k][l];
+    f.metric_sum.c[k] = g.metric[k][l];
+  }
+  return f;
+}
+
+template <int D>
+Rating FaceBatch<D>::rate_one(int i, const RatingKernel<D>& kernel, const Vec<D>& apex,
+                              const Packed<D>& apex_carried) {
+  return kernel(real(i), apex, apex_carried);
+}
+
+template <int D>
+void FaceBatch<D>::rate(int group, const RatingKernel<D>& kernel, const Vec<D>& apex,
+                        const Packed<D>& apex_carried, Rates& rates) {
+  if (!kernel.plain()) {
+    for (int l = 0; l < width && group * width + l < size(); ++l) {
+      const Rating r = rate_one(group * width + l, kernel, apex, apex_carried);
+      rates.quality[l] = r.quality;
+      rates.energy[l] = r.energy;
+    }
+    return;
+  }
+  derive(group);
+  rate_lanes(groups_[group], apex.data(), apex_carried.c.data(), kernel.relaxation,
+             kernel.size_weight, rates.quality, rates.energy);
+}
+
+template <int D>
+typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const RatingKernel<D>& kernel,
+                                                             const Vec<D>& apex,
+                                                             const Packed<D>& apex_carried) {
+  Derivatives out;
+  alignas(32) Lanes gradient[D] = {}, hessian[packed] = {}, convex[packed] = {};
+  const auto sum_up = [&](int lanes) {
+    for (int l = 0; l < lanes; ++l) {
+      for (int k = 0; k < D; ++k) out.gradient[k] += gradient[k][l];
+      for (int k = 0; k < packed; ++k) {
+        out.hessian.c[k] += hessian[k][l];
+        out.convex.c[k] += convex[k][l];
+      }
+    }
+  };
+  const int full = size() / width;
+  for (int g = 0; g < full; ++g) {
+    derive(g);
+    if (!derive_lanes(groups_[g], apex.data(), apex_carried.c.data(), kernel.size_weight, gradient,
+                      hessian, convex)) {
+      out.sound = false;
+      return out;
+    }
+  }
+  sum_up(width);
+  if (full < groups()) {
+    // The lanes behind the last face are left out of the sum.
+    std::fill_n(&gradient[0][0], D * width, 0.0);
+    std::fill_n(&hessian[0][0], packed * width, 0.0);
+    std::fill_n(&convex[0][0], packed * width, 0.0);
+    derive(full);
+    out.sound = derive_lanes(groups_[full], apex.data(), apex_carried.c.data(), kernel.size_weight,
+                             gradient, hessian, convex);
+    sum_up(size() - full * width);
+  }
+  return out;
+}
+
+template class FaceBatch<2>;
+template class FaceBatch<3>;
+template class FaceBatch<4>;
+
+}  // namespace lamella

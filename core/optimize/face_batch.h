@@ -1,0 +1,65 @@
+#pragma once
+
+#include "core/optimize/cavity.h"
+
+namespace lamella {
+
+/// The real faces of a cavity, four to a group in the order of vector registers: the star is rated
+/// group by group, so that a bad candidate is left at the first group that tells.
+template <int D>
+class FaceBatch {
+ public:
+  static constexpr int width = 4;
+  static constexpr int packed = Packed<D>::size;
+  using Lanes = double[width];
+
+  /// What a rating needs of four faces; RealFace with the faces innermost. The lanes behind the
+  /// last face repeat it.
+  struct alignas(32) Group {
+    Lanes points[D][D];  ///< [node][coordinate]
+    Lanes metric[packed];
+    Lanes normal[D], center[D], normal2, edges[packed];
+  };
+  struct alignas(32) Rates {
+    Lanes quality, energy;
+  };
+  /// Sums over faces, of Newton's method: gradient and Hessian of the energy, and the part of the
+  /// Hessian that is positive definite for sure.
+  struct Derivatives {
+    Vec<D> gradient = Vec<D>::Zero();
+    Packed<D> hessian = Packed<D>::zero(), convex = Packed<D>::zero();
+    bool sound = true;  ///< no face was flat or ill oriented
+  };
+
+  void clear() {
+    faces_.clear();
+    derived_ = 0;
+  }
+  void add(const Topology<D>& topo, std::int32_t element, int place,
+           const std::vector<Packed<D>>& carried);
+  int size() const { return static_cast<int>(faces_.size()); }
+  int groups() const { return (size() + width - 1) / width; }
+  const CavityFace<D>& operator[](int i) const { return faces_[i]; }
+  auto begin() const { return faces_.begin(); }
+  auto end() const { return faces_.end(); }
+
+  /// Ratings of the elements {face, apex} of a group.
+  void rate(int group, const RatingKernel<D>& kernel, const Vec<D>& apex,
+            const Packed<D>& apex_carried, Rates& rates);
+  Rating rate_one(int i, const RatingKernel<D>& kernel, const Vec<D>& apex,
+                  const Packed<D>& apex_carried);
+  /// Of the energy in the position of an apex whose metric is held.
+  Derivatives derivatives(const RatingKernel<D>& kernel, const Vec<D>& apex,
+                          const Packed<D>& apex_carried);
+  /// One face, taken out.
+  RealFace<D> real(int i);
+
+ private:
+  void derive(int group);
+
+  std::vector<CavityFace<D>> faces_;
+  std::vector<Group> groups_;
+  int derived_ = 0;  ///< groups whose normals and sums are known
+};
+
+}  // namespace lamella
