@@ -51,6 +51,7 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
   carried_.resize(topo_.points.size());
   carried_known_.resize(topo_.points.size(), 0);
   mark_.resize(topo_.points.size(), 0);
+  place_.resize(topo_.points.size());
   if (!plain_) {
     own_averaged_.resize(topo_.points.size());
     for (std::size_t n = 1; n < metric_.size(); ++n)
@@ -119,34 +120,59 @@ std::size_t StarOptimizer<D>::sweep(const SweepParams& params, const Progress& p
 /// has nothing new to offer.
 template <int D>
 std::size_t StarOptimizer<D>::improve_edges(NodeId s, std::uint32_t before) {
-  owned_.clear();
-  ++mark_value_;
-  for (auto e : topo_.around.of(s))
-    for (NodeId n : topo_.elements[e])
-      if (n > s && mark_[n] != mark_value_) {
-        mark_[n] = mark_value_;
-        if (!locked(s) || !locked(n)) owned_.push_back(n);
-      }
+  list_edges(s, before, 0);
   std::size_t operations = 0;
   const double split2 = sweep_.split_above * sweep_.split_above;
-  for (std::size_t i = 0; i < owned_.size() && !topo_.around.empty(s); ++i) {
-    const NodeId n = owned_[i];
-    star_.clear();
-    bool fresh = false;
-    double worst = infinity;
-    for (auto e : topo_.around.of(s))
-      if (Topology<D>::has(topo_.elements[e], n)) {
-        star_.push_back(e);
-        fresh = fresh || topo_.birth[e] > before;
-        worst = std::min(worst, rating_[e].quality);
-      }
-    if (!fresh) continue;
+  for (std::size_t i = 0; i < owned_.size(); ++i) {
+    if (!owned_[i].fresh) continue;
+    const NodeId n = owned_[i].node;
     const double l2 = length2(s, n);
-    const bool is_long = l2 > split2 && longest(s, n, l2 / (nearly_longest * nearly_longest));
-    if (!is_long && worst > sweep_.good_enough) continue;
-    if (process_edge(s, n, is_long)) ++operations;
+    if (l2 <= split2 && owned_[i].worst > sweep_.good_enough) continue;
+    star_.clear();
+    for (auto e : topo_.around.of(s))
+      if (Topology<D>::has(topo_.elements[e], n)) star_.push_back(e);
+    const bool is_long =
+        l2 > split2 && longest(s, n, l2 / (nearly_longest * nearly_longest));
+    if (!is_long && owned_[i].worst > sweep_.good_enough) continue;
+    if (!process_edge(s, n, is_long)) continue;
+    ++operations;
+    if (topo_.around.empty(s)) break;
+    list_edges(s, before, i + 1);
   }
   return operations;
+}
+
+/// The edges that s owns, with the quality of their worst element and whether one of their elements
+/// is younger than `before`; those before `first` are done and stay in the list. Without elements
+/// an edge is no longer fresh.
+template <int D>
+void StarOptimizer<D>::list_edges(NodeId s, std::uint32_t before, std::size_t first) {
+  const bool anew = first == 0;
+  if (anew) owned_.clear();
+  ++mark_value_;
+  for (std::size_t i = first; i < owned_.size(); ++i) {
+    owned_[i].worst = infinity;
+    owned_[i].fresh = false;
+    mark_[owned_[i].node] = mark_value_;
+    place_[owned_[i].node] = static_cast<std::int32_t>(i);
+  }
+  const bool held = locked(s);
+  for (auto e : topo_.around.of(s)) {
+    const bool fresh = topo_.birth[e] > before;
+    const double quality = rating_[e].quality;
+    for (NodeId n : topo_.elements[e]) {
+      if (n <= s) continue;
+      if (mark_[n] != mark_value_) {
+        if (!anew || (held && locked(n))) continue;
+        mark_[n] = mark_value_;
+        place_[n] = static_cast<std::int32_t>(owned_.size());
+        owned_.push_back({n, infinity, false});
+      }
+      OwnedEdge& edge = owned_[place_[n]];
+      edge.fresh |= fresh;
+      edge.worst = std::min(edge.worst, quality);
+    }
+  }
 }
 
 /// Whether no edge from either end to a node around the edge has a squared length above `limit2`:
@@ -406,6 +432,7 @@ void StarOptimizer<D>::grow_nodes() {
   shared_.resize(size, 0);
   done_.resize(size, 0);
   mark_.resize(size, 0);
+  place_.resize(size);
 }
 
 /// Ratings of the elements {face, apex} of all faces into rates_.

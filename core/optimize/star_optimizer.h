@@ -80,6 +80,7 @@ class StarOptimizer {
   bool process_node(NodeId s);
   bool process_edge(NodeId s, NodeId n, bool is_long);
   std::size_t improve_edges(NodeId s, std::uint32_t before);
+  void list_edges(NodeId s, std::uint32_t before, std::size_t first);
   bool movable(NodeId n) const { return !fixed_[n] && !locked(n); }
   bool locked(NodeId n) const { return shared_[n] != 0; }
   void open_cavity(std::span<const std::int32_t> elements, NodeId a, NodeId b);
@@ -165,7 +166,13 @@ class StarOptimizer {
   std::vector<std::int32_t> retag_;  ///< [virtual face] tag of the new facet
   std::vector<std::int32_t> best_retag_;
   std::vector<std::int32_t> star_;
-  std::vector<NodeId> owned_;
+  struct OwnedEdge {
+    NodeId node;   ///< its other end
+    double worst;  ///< quality of the elements around
+    bool fresh;    ///< whether one of them is new
+  };
+  std::vector<OwnedEdge> owned_;
+  std::vector<std::int32_t> place_;  ///< [node] in owned_, where marked
 };
 
 }  // namespace lamella

@@ -13,6 +13,7 @@ std::size_t StarOptimizer<D>::open_blocking(const Progress& progress) {
       for (NodeId n : topo_.elements[e]) on_wall[n] = 1;
   const std::size_t before = counts_.splits;
   const auto count = static_cast<NodeId>(on_wall.size());
+  std::vector<NodeId> partners;
   const auto insert = [&](const Apex& apex) {
     rate_all(apex);
     for (int i = 0; i < faces_.size(); ++i)
@@ -22,15 +23,15 @@ std::size_t StarOptimizer<D>::open_blocking(const Progress& progress) {
   };
   for (NodeId s = 1; s < count && !progress.cancelled(); ++s) {
     if (!on_wall[s] || topo_.around.empty(s)) continue;
-    owned_.clear();
+    partners.clear();
     ++mark_value_;
     for (auto e : topo_.around.of(s))
       for (NodeId n : topo_.elements[e])
         if (n > s && n < count && on_wall[n] && mark_[n] != mark_value_) {
           mark_[n] = mark_value_;
-          owned_.push_back(n);
+          partners.push_back(n);
         }
-    for (NodeId n : owned_) {
+    for (NodeId n : partners) {
       star_.clear();
       bool inner = true;
       for (auto e : topo_.around.of(s))
