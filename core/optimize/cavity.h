@@ -49,12 +49,18 @@ double power_of_size(double h2) {
   return h2 * h2;
 }
 
+/// Energy of a typical element of a good mesh: what an additional element must be worth.
+template <int D>
+inline constexpr double typical_energy = D == 2 ? 1.02 : D == 3 ? 1.2 : 1.4;
+/// Weight w of the size in the energy.
+template <int D>
+inline constexpr double size_weight = D == 2 ? 1.2 : 0.7;
+
 /// Rates the element {face, apex}. Negative quality for an ill oriented or flat one.
 template <int D>
 struct RatingKernel {
   static constexpr double mean = 1.0 / (D + 1);
   double relaxation = 1;    ///< of the shape
-  double size_weight = 1;   ///< w of the energy
   MetricMean element_mean = MetricMean::m;
   SizeAverage size_average = SizeAverage::l2;
   const std::vector<Vec<D>>* points = nullptr;
@@ -70,6 +76,7 @@ struct RatingKernel {
     for (double& c : m.c) c *= mean;
     if (element_mean == MetricMean::m) [[likely]]
       return m;
+    if (element_mean == MetricMean::log) return Packed<D>::from(metric_exp<D>(m.full()));
     const Mat<D> r = element_mean == MetricMean::root ? m.full() : Mat<D>(m.full().inverse());
     return Packed<D>::from(r * r);
   }
@@ -100,7 +107,7 @@ struct RatingKernel {
     const double v = volume * std::sqrt(m.det() * ((1 << D) * mean));
     const double shape = v * inverse;
     return {std::min(relaxation * shape, std::min(h, inverse)),
-            1 / shape + size_weight * (h + inverse - 2)};
+            1 / shape + size_weight<D> * (h + inverse - 2)};
   }
 };
 

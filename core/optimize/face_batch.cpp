@@ -82,13 +82,13 @@ LAMELLA_INLINE Quad power(Quad h2) {
 
 template <int D>
 LAMELLA_INLINE void rate_group(const Group<D>& g, const double* apex, const double* carried,
-                               double relaxation, double size_weight, double* quality,
+                               double relaxation, double weight, double* quality,
                                double* energy) {
   Shapes<D> s;
   shapes<D>(g, apex, carried, s);
   const Quad h = power<D>(s.size), inverse = 1 / h, measure = s.volume * s.scale;
   const Quad q = least(relaxation * (measure * inverse), least(h, inverse));
-  const Quad e = h / measure + size_weight * (h + inverse - 2);
+  const Quad e = h / measure + weight * (h + inverse - 2);
   Quad w2 = s.w[0] * s.w[0];
   for (int k = 1; k < D; ++k) w2 += s.w[k] * s.w[k];
   // Flat within rounding, or ill oriented.
@@ -273,7 +273,7 @@ void FaceBatch<D>::rate(int group, const RatingKernel<D>& kernel, const Vec<D>& 
   }
   derive(group);
   rate_lanes(groups_[group], apex.data(), apex_carried.c.data(), kernel.relaxation,
-             kernel.size_weight, rates.quality, rates.energy);
+             size_weight<D>, rates.quality, rates.energy);
 }
 
 template <int D>
@@ -294,7 +294,7 @@ typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const RatingKernel<
   const int full = size() / width;
   for (int g = 0; g < full; ++g) {
     derive(g);
-    if (!derive_lanes(groups_[g], apex.data(), apex_carried.c.data(), kernel.size_weight, gradient,
+    if (!derive_lanes(groups_[g], apex.data(), apex_carried.c.data(), size_weight<D>, gradient,
                       hessian, convex)) {
       out.sound = false;
       return out;
@@ -307,7 +307,7 @@ typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const RatingKernel<
     std::fill_n(&hessian[0][0], packed * width, 0.0);
     std::fill_n(&convex[0][0], packed * width, 0.0);
     derive(full);
-    out.sound = derive_lanes(groups_[full], apex.data(), apex_carried.c.data(), kernel.size_weight,
+    out.sound = derive_lanes(groups_[full], apex.data(), apex_carried.c.data(), size_weight<D>,
                              gradient, hessian, convex);
     sum_up(size() - full * width);
   }

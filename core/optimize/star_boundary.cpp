@@ -52,6 +52,10 @@ bool StarOptimizer<D>::edge_site(NodeId s, NodeId n, BoundarySite& site) {
     site.on_feature = virtual_faces_.size() != 4 ||
                       model_.hard(topo_.label[virtual_faces_[0].element],
                                   topo_.label[virtual_faces_[2].element]);
+  if constexpr (D == 4)
+    for (const auto& f : virtual_faces_)
+      site.on_feature = site.on_feature || model_.hard(topo_.label[virtual_faces_[0].element],
+                                                       topo_.label[f.element]);
   return true;
 }
 
@@ -137,6 +141,30 @@ bool StarOptimizer<D>::follows_surface(const std::array<Vec<D>, D>& p, const Fac
   return true;
 }
 
+/// Whether the borders between groups around a node stay where they are when the apex takes its
+/// place: it must lie in the span of each piece of border. In 3D features see to that.
+template <int D>
+bool StarOptimizer<D>::borders_allow(const Apex& apex, const BoundarySite& site) const {
+  for (std::size_t i = 0; i < virtual_faces_.size(); ++i)
+    for (std::size_t j = i + 1; j < virtual_faces_.size(); ++j) {
+      const auto &f = virtual_faces_[i], &g = virtual_faces_[j];
+      if (!model_.hard(topo_.label[f.element], topo_.label[g.element])) continue;
+      std::array<Vec<D>, D> span;  // orthonormal directions from the node
+      int common = 0;
+      for (NodeId n : f.nodes) {
+        if (n == 0 || !g.contains(n)) continue;
+        Vec<D> e = topo_.points[n] - site.anchor;
+        for (int k = 0; k < common; ++k) e -= span[k].dot(e) * span[k];
+        span[common++] = e.normalized();
+      }
+      if (common != D - 2) continue;
+      Vec<D> off = apex.point - site.anchor;
+      for (int k = 0; k < common; ++k) off -= span[k].dot(off) * span[k];
+      if (off.squaredNorm() > flat_ * flat_) return false;
+    }
+  return true;
+}
+
 /// The new boundary facets of an apex against the surface: nowhere turned, near the anchor
 /// that is removed, and within the chord tolerance of the original surface; so must the feature edges from
 /// the apex to its ends be. Fills retag_.
@@ -144,6 +172,7 @@ template <int D>
 bool StarOptimizer<D>::boundary_allows(const Apex& apex, const BoundarySite& site) {
   const Vec<D>& anchor = site.anchor;
   const bool ends = site.ends[0] != 0;
+  if (D == 4 && site.b == 0 && !borders_allow(apex, site)) return false;
   const std::size_t count = virtual_faces_.size();
   retag_.resize(count);
   bool flat = true, one_tag = true, planar = true;

@@ -10,9 +10,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Squared metric distance within which a moved node keeps the metric carried to it instead of
 /// asking the function again.
 constexpr double still_near = 0.0025;
-/// Energy of a typical element of a good mesh: what an additional element must be worth.
-template <int D>
-constexpr double typical_energy = D == 2 ? 1.02 : D == 3 ? 1.2 : 1.4;
 /// Squared metric length of a move that makes the edges around worth another look.
 constexpr double far_move2 = 0.01;
 /// Of the longest edge around: an edge that is shorter waits for that one to be split.
@@ -59,7 +56,6 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
   }
   kernel_.element_mean = params.element_mean;
   kernel_.size_average = params.size_average;
-  kernel_.size_weight = D == 2 ? 1.2 : 0.7;
   kernel_.points = &topo_.points;
   rating_.resize(topo_.elements.size());
   kernel_.relaxation = 0;
@@ -383,7 +379,7 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n, bool is_long) {
     for (NodeId v : link_) offer(existing(v), site);
   } else if (!site.on_feature) {
     for (NodeId v : link_) {
-      bool on_boundary = D == 2;
+      bool on_boundary = false;
       for (const auto& f : virtual_faces_) on_boundary = on_boundary || f.contains(v);
       if (on_boundary) offer(existing(v), site);
     }

@@ -109,6 +109,7 @@ class StarOptimizer {
   bool node_site(NodeId s, BoundarySite& site);
   bool edge_site(NodeId s, NodeId n, BoundarySite& site);
   bool boundary_allows(const Apex& apex, const BoundarySite& site);
+  bool borders_allow(const Apex& apex, const BoundarySite& site) const;
   bool follows_surface(const std::array<Vec<D>, D>& p, const Facet& nodes, NodeId replaced) const;
   bool topology_allows(const Apex& apex, const BoundarySite& site) const;
   void collect_ring(NodeId s);

@@ -149,6 +149,7 @@ Block<D> Partition<D>::extract(const WorkMesh<D>& mesh, int block) const {
       }
   std::sort(nodes.begin(), nodes.end());
   b.shared.push_back(0);
+  if (mesh.asked.empty()) b.mesh.asked.clear();
   for (NodeId n : nodes) {
     local[n] = static_cast<NodeId>(b.mesh.points.size());
     b.mesh.points.push_back(mesh.points[n]);
@@ -194,7 +195,7 @@ WorkMesh<D> merge(const WorkMesh<D>& before, std::vector<Block<D>>& blocks, int 
   }
   out.points.resize(next);
   out.metric.resize(next);
-  if (!before.asked.empty()) out.asked.resize(next);
+  out.asked.resize(before.asked.empty() ? 0 : next);
   out.fixed.resize(next, 0);
   out.dirty.resize(next, 0);
   out.elements.resize(elements);
