@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "core/base/parallel.h"
+#include "core/mesh/interfaces.h"
 #include "core/mesh/quality.h"
 #include "core/optimize/star_optimizer.h"
 
@@ -96,6 +98,7 @@ class Adaption {
     wake_all();
   }
 
+  const WorkMesh<D>& work() const { return work_; }
   void wake_all() { work_.dirty.assign(work_.points.size(), 1); }
   std::size_t node_count() const { return work_.node_count(); }
   AdaptReport& report() { return report_; }
@@ -115,8 +118,13 @@ class Adaption {
         [&](std::size_t i) {
           blocks[i] = partition.extract(work_, static_cast<int>(i));
           if (!partition.pending(static_cast<int>(i)) || progress.cancelled()) return;
+          SweepParams local = sweep;
+          const auto size = static_cast<double>(blocks[i].mesh.elements.size());
+          const double share = most_elements_ * size / static_cast<double>(work_.elements.size());
+          if (share < 1e15) local.most_elements = static_cast<std::size_t>(share);
           StarOptimizer<D> star(std::move(blocks[i]), model_, params_, metric_at_, scale_);
-          operations += star.sweep(sweep, progress);
+          operations += star.sweep(local, progress);
+          if (star.overfull()) overfull_ = true;
           counts[i] = star.counts();
           blocks[i] = star.take();
           progress.report(static_cast<double>(++finished) / static_cast<double>(blocks.size()));
@@ -132,13 +140,27 @@ class Adaption {
     return operations;
   }
 
-  /// MB of all arrays while a round is under way.
-  double memory() const {
-    const double node = sizeof(Vec<D>) * (1 + !work_.asked.empty()) + sizeof(Packed<D>) + 8;
-    const double element = sizeof(typename WorkMesh<D>::Element) + 4;
-    return 3e-6 * (node * static_cast<double>(work_.points.size()) +
-                   element * static_cast<double>(work_.elements.size()));
+  /// Opens what blocks, then lets the nodes settle.
+  void open_blocking(const Progress& progress) {
+    for (int i = 0; i < 3 && !progress.cancelled(); ++i) {
+      StarOptimizer<D> star(whole_block(work_), model_, params_, metric_at_, scale_);
+      const std::size_t added = star.open_blocking(progress);
+      report_.splits += added;
+      report_.blocking_treated += added;
+      work_ = std::move(star.take().mesh);
+      if (added == 0) break;
+    }
+    wake_all();
+    SweepParams settle;
+    settle.criterion = Criterion::energy;
+    settle.moves_only = true;
+    for (int i = 0; i < 3; ++i) round(settle, progress);
   }
+
+  /// Bound of the elements of the whole mesh.
+  void set_most_elements(double most) { most_elements_ = most; }
+  bool overfull() const { return overfull_; }
+  std::size_t element_count() const { return work_.elements.size(); }
 
   Adapted<D> result(const SimplexMesh<D>& original) {
     Adapted<D> out;
@@ -174,7 +196,38 @@ class Adaption {
   WorkMesh<D> work_;
   AdaptReport report_;
   std::size_t sorted_at_ = 0;
+  double most_elements_ = std::numeric_limits<double>::infinity();
+  std::atomic<bool> overfull_ = false;
 };
+
+/// Elements a node in a mesh of good elements, and bytes an element takes at the most while a round
+/// is under way, its share of the nodes and the result included (measured, rounded up).
+template <int D>
+constexpr double elements_a_node = D == 2 ? 2 : D == 3 ? 5.5 : 16;
+template <int D>
+constexpr double bytes_an_element = D == 2 ? 400 : D == 3 ? 220 : 240;
+
+/// (1.34) before the start: nodes and MB.
+template <int D>
+void forecast(const SimplexMesh<D>& mesh, const WorkMesh<D>& work, AdaptReport& report) {
+  MetricField<D> metric(work.metric.size(), Metric<D>::Identity());
+  for (std::size_t n = 1; n < metric.size(); ++n) metric[n] = work.metric[n].full();
+  const double elements =
+      allocation_factor(mesh, metric) * static_cast<double>(mesh.elements.size());
+  report.forecast_nodes = elements / elements_a_node<D>;
+  report.forecast_memory = 1e-6 * bytes_an_element<D> * elements;
+}
+
+template <int D>
+Error over_budget(const AdaptReport& report, double limit, std::size_t elements) {
+  const auto number = [](double x) { return std::to_string(static_cast<long long>(std::ceil(x))); };
+  return {Code::memory,
+          "The adaption needs more than the " + number(limit) + " MB allowed: it stopped at " +
+              std::to_string(elements) + " elements; " + number(report.forecast_memory) +
+              " MB and " + number(report.forecast_nodes) + " nodes are forecast.",
+          "Allow more memory, ask for larger sizes or fewer layers, or bound the number of "
+          "elements."};
+}
 
 template <int D>
 Result<void> check_input(const SimplexMesh<D>& mesh, const MetricField<D>& metric, bool function) {
@@ -209,11 +262,14 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
     hi = hi.cwiseMax(mesh.points[n]);
   }
   const double scale = (hi - lo).norm();
-  const SimplexMesh<D>& whole = mesh;
+  const SimplexMesh<D> whole = with_interfaces(mesh);
   const BoundaryModel<D> model(whole, surface, params.chord_tolerance.value_or(1e-3 * scale),
                                params.feature_angle, params.frozen_groups, params.frozen_bodies);
   Adaption<D> adaption(whole, metric, model, params, metric_at, scale);
   AdaptReport& report = adaption.report();
+  forecast(mesh, adaption.work(), report);
+  if (params.memory_limit)
+    adaption.set_most_elements(*params.memory_limit * 1e6 / bytes_an_element<D>);
 
   const std::vector<Stage> all = stages<D>(params);
   int rounds = 0;
@@ -229,14 +285,19 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
       std::size_t done = adaption.round(stage.sweep,
                                         progress.portion(begin, begin + 1.0 / rounds, "adapting"));
       if (!stage.count_moves) done -= report.moves - moves;
+      if (adaption.overfull())
+        return over_budget<D>(report, *params.memory_limit, adaption.element_count());
       if (static_cast<double>(done) < stage.settled * static_cast<double>(adaption.node_count()))
         break;
     }
     past += stage.rounds;
   }
+  if (params.treat_blocking && !progress.cancelled()) adaption.open_blocking(progress);
   report.cancelled = progress.cancelled();
   progress.report(1);
-  return adaption.result(mesh);
+  Adapted<D> out = adaption.result(mesh);
+  if (params.treat_blocking) out.report.blocking = blocking_faces(out.mesh).size();
+  return out;
 }
 
 template Result<Adapted<2>> adapt(const SimplexMesh<2>&, const MetricField<2>&,

@@ -104,7 +104,12 @@ std::size_t StarOptimizer<D>::sweep(const SweepParams& params, const Progress& p
       for (auto e : topo_.around.of(s)) worst = std::min(worst, rating_[e].quality);
       if (worst > params.attention) continue;
     }
+    if (topo_.elements.size() - topo_.free_elements.size() > params.most_elements) {
+      overfull_ = true;
+      return operations;
+    }
     if (movable(s) && process_node(s)) ++operations;
+    if (params.moves_only) continue;
     if (!topo_.around.empty(s)) operations += improve_edges(s, before);
   }
   return operations;
@@ -321,6 +326,7 @@ bool StarOptimizer<D>::process_node(NodeId s) {
   const double near2 = sweep_.collapse_below * sweep_.collapse_below;
   const bool any = cavity_worst_ < poor_quality;
   const auto join = [&](NodeId v) {
+    if (sweep_.moves_only) return;
     if (any || length2(s, v) < near2) offer(existing(v), site);
   };
   if (!site.boundary) {

@@ -25,6 +25,8 @@ struct SweepParams {
   double collapse_below = 0.71;  ///< metric length below which a node may join its neighbor
   double good_enough = 0.7;  ///< c(T) above which elements are not reconnected
   double temperature = 0;    ///< energy that a reconnection may cost, at random
+  std::size_t most_elements = std::numeric_limits<std::size_t>::max();  ///< of a block
+  bool moves_only = false;   ///< nodes move, nothing is reconnected
   double attention = 2;      ///< c(T) above which nodes are left alone altogether
 };
 
@@ -39,6 +41,12 @@ class StarOptimizer {
   /// One pass over the nodes and the edges they own whose surroundings changed since their last
   /// turn. Returns the number of operations; stops early when cancelled.
   std::size_t sweep(const SweepParams& params, const Progress& progress);
+  /// Puts a node into every inner edge between two boundary nodes, then into every inner face whose
+  /// nodes all lie on the boundary, wherever the elements stay well oriented (C.1.1). The block must
+  /// be the whole mesh. Returns the number of new nodes.
+  std::size_t open_blocking(const Progress& progress);
+  /// Whether the sweep stopped because the block grew beyond its bound.
+  bool overfull() const { return overfull_; }
   const AdaptReport& counts() const { return counts_; }
   /// The block as it is now, numbered without gaps.
   Block<D> take();
@@ -68,6 +76,7 @@ class StarOptimizer {
   };
 
   void set_relaxation(double beta);
+  void open_pair(std::int32_t e, std::int32_t other, const Facet& face);
   bool process_node(NodeId s);
   bool process_edge(NodeId s, NodeId n, bool is_long);
   std::size_t improve_edges(NodeId s, std::uint32_t before);
@@ -116,6 +125,7 @@ class StarOptimizer {
   RatingKernel<D> kernel_;
   SweepParams sweep_;
   AdaptReport counts_;
+  bool overfull_ = false;
   double flat_;                         ///< mm, below which a height counts as zero
   std::vector<Packed<D>> metric_;       ///< [node]
   mutable std::vector<Packed<D>> carried_;    ///< [node] what new nodes average of the metric

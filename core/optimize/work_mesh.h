@@ -51,6 +51,15 @@ class Partition {
   std::vector<char> pending_;
 };
 
+/// The whole mesh as one block; `mesh` is left empty.
+template <int D>
+Block<D> whole_block(WorkMesh<D>& mesh) {
+  Block<D> b;
+  b.mesh = std::move(mesh);
+  b.shared.assign(b.mesh.points.size(), 0);
+  return b;
+}
+
 /// The mesh made of what became of all blocks. Nodes are numbered anew: shared ones first, then
 /// block by block.
 template <int D>
