@@ -12,6 +12,12 @@ using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_
                                   std::integral_constant<int, 4>>;
 TYPED_TEST_SUITE(AdaptProperties, Dimensions);
 
+template <class T>
+class AdaptInPlaneAndSpace : public testing::Test {};
+using PlaneAndSpace =
+    testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(AdaptInPlaneAndSpace, PlaneAndSpace);
+
 TYPED_TEST(AdaptProperties, EveryFlatDomainKeepsItsShapeUnderEveryMetric) {
   constexpr int D = TypeParam::value;
   std::mt19937 rng(D);
@@ -46,12 +52,12 @@ TYPED_TEST(AdaptProperties, CornersStay) {
     EXPECT_TRUE(has_point<D>(out.mesh, simplex.points[n]));
 }
 
-TYPED_TEST(AdaptProperties, AGroupThatEndsWithinAFlatSideKeepsItsArea) {
+TYPED_TEST(AdaptInPlaneAndSpace, AGroupThatEndsWithinAFlatSideKeepsItsArea) {
   constexpr int D = TypeParam::value;
   const auto mesh =
       with_gate<D>(unit_box<D>(2), [](const Vec<D>& x) { return x[0] == 0 && x[1] < 0.5; });
   std::mt19937 rng(D);
-  for (const auto& [name, metric] : metrics<D>(D == 2 ? 0.1 : D == 3 ? 0.3 : 0.7, rng)) {
+  for (const auto& [name, metric] : metrics<D>(D == 2 ? 0.1 : 0.3, rng)) {
     SCOPED_TRACE(name);
     const auto out = adapted<D>(mesh, metric);
     expect_valid(out.mesh);
@@ -93,10 +99,28 @@ Figures figures(const SimplexMesh<D>& mesh, const MetricFunction<D>& metric) {
           static_cast<double>(mesh.node_count())};
 }
 
-void expect_alike(const Figures& a, const Figures& b) {
-  EXPECT_NEAR(a.quality, b.quality, 0.02 * a.quality);
-  EXPECT_NEAR(a.unit_edges, b.unit_edges, 0.02 * a.unit_edges);
-  EXPECT_NEAR(a.nodes, b.nodes, 0.02 * a.nodes);
+/// `a` differs from what some seeds give by no more than 2 % beyond what they differ themselves.
+void expect_alike(const std::vector<Figures>& seeds, const Figures& a) {
+  const auto within = [&](double Figures::*figure) {
+    double low = seeds[0].*figure, high = low;
+    for (const Figures& s : seeds) {
+      low = std::min(low, s.*figure);
+      high = std::max(high, s.*figure);
+    }
+    EXPECT_GE(a.*figure, 0.98 * low);
+    EXPECT_LE(a.*figure, 1.02 * high);
+  };
+  within(&Figures::quality);
+  within(&Figures::unit_edges);
+  within(&Figures::nodes);
+}
+
+/// Twice: once alone knows the metric at a few nodes only.
+template <int D>
+Figures twice(const SimplexMesh<D>& mesh, const MetricFunction<D>& metric, std::uint64_t seed = 1) {
+  AdaptParams params;
+  params.seed = seed;
+  return figures<D>(adapted<D>(adapted<D>(mesh, metric, params).mesh, metric, params).mesh, metric);
 }
 
 template <int D>
@@ -130,17 +154,15 @@ SimplexMesh<D> renumbered(const SimplexMesh<D>& mesh, std::mt19937& rng) {
   return out;
 }
 
-template <class T>
-class AdaptInvariance : public testing::Test {};
-using Flat = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(AdaptInvariance, Flat);
-
-TYPED_TEST(AdaptInvariance, RotatingMovingAndScalingMeshAndMetricChangesNoFigure) {
+TYPED_TEST(AdaptInPlaneAndSpace, PlaceSizeAndNumberingChangeNoFigure) {
   constexpr int D = TypeParam::value;
   std::mt19937 rng(40 + D);
   const auto mesh = unit_box<D>(2);
   for (const auto& [name, metric] : metrics<D>(D == 2 ? 0.03 : 0.1, rng)) {
     SCOPED_TRACE(name);
+    std::vector<Figures> seeds;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) seeds.push_back(twice<D>(mesh, metric, seed));
+
     const Mat<D> turn = random_rotation<D>(rng);
     const Vec<D> shift = 5 * random_vector<D>(rng);
     const double scale = std::exp(uniform(rng, -4, 4));
@@ -151,61 +173,39 @@ TYPED_TEST(AdaptInvariance, RotatingMovingAndScalingMeshAndMetricChangesNoFigure
       const Vec<D> here = turn.transpose() * (x / scale - shift);
       return Metric<D>(turn * at(here) * turn.transpose() / (scale * scale));
     };
-    // Several adaptions: one alone knows the metric at a few nodes only.
-    auto a = adapted<D>(mesh, metric), b = adapted<D>(other, there);
-    for (int i = 0; i < 2; ++i) {
-      a = adapted<D>(a.mesh, metric);
-      b = adapted<D>(b.mesh, there);
-    }
-    expect_alike(figures<D>(a.mesh, metric), figures<D>(b.mesh, there));
+    expect_alike(seeds, twice<D>(other, there));
+    expect_alike(seeds, twice<D>(renumbered<D>(mesh, rng), metric));
   }
 }
 
-TYPED_TEST(AdaptInvariance, RenumberingNodesAndElementsChangesNoFigure) {
+TYPED_TEST(AdaptInPlaneAndSpace, CoarseningUndoesRefinementAndASecondTimeChangesLittle) {
   constexpr int D = TypeParam::value;
-  std::mt19937 rng(50 + D);
-  const auto mesh = unit_box<D>(2);
-  for (const auto& [name, metric] : metrics<D>(D == 2 ? 0.03 : 0.1, rng)) {
-    SCOPED_TRACE(name);
-    auto a = adapted<D>(mesh, metric), b = adapted<D>(renumbered<D>(mesh, rng), metric);
-    for (int i = 0; i < 2; ++i) {
-      a = adapted<D>(a.mesh, metric);
-      b = adapted<D>(renumbered<D>(b.mesh, rng), metric);
-    }
-    expect_alike(figures<D>(a.mesh, metric), figures<D>(b.mesh, metric));
-  }
-}
+  const double h = D == 2 ? 0.02 : 0.07;
+  const auto uniform = [](double size) {
+    return MetricFunction<D>([size](const Vec<D>&) { return isotropic_metric<D>(size); });
+  };
+  const auto box = unit_box<D>(2);
+  const auto fine = adapted<D>(box, uniform(h));
+  const auto coarse = adapted<D>(fine.mesh, uniform(2 * h));
+  expect_valid(coarse.mesh);
+  expect_same_shape(box, coarse.mesh);
+  // Inner nodes of a box with an edge of n sizes are as n^D: those on the boundary lower the
+  // ratio.
+  const double ratio =
+      static_cast<double>(fine.mesh.node_count()) / static_cast<double>(coarse.mesh.node_count());
+  EXPECT_LT(ratio, 1.1 * (1 << D));
+  EXPECT_GT(ratio, 0.65 * (1 << D));
+  // From a coarse mesh the same size is reached as from a fine one.
+  const auto direct = adapted<D>(box, uniform(2 * h));
+  const auto nodes = static_cast<double>(coarse.mesh.node_count());
+  EXPECT_NEAR(static_cast<double>(direct.mesh.node_count()), nodes, 0.1 * nodes);
 
-TYPED_TEST(AdaptProperties, CoarseningUndoesRefinementAndASecondTimeChangesLittle) {
-  constexpr int D = TypeParam::value;
-  if constexpr (D < 4) {  // in 4D such a box has hardly an inner node
-    const double h = D == 2 ? 0.02 : 0.07;
-    const auto uniform = [](double size) {
-      return MetricFunction<D>([size](const Vec<D>&) { return isotropic_metric<D>(size); });
-    };
-    const auto box = unit_box<D>(2);
-    const auto fine = adapted<D>(box, uniform(h));
-    const auto coarse = adapted<D>(fine.mesh, uniform(2 * h));
-    expect_valid(coarse.mesh);
-    expect_same_shape(box, coarse.mesh);
-    // Inner nodes of a box with an edge of n sizes are as n^D: those on the boundary lower the
-    // ratio.
-    const double ratio =
-        static_cast<double>(fine.mesh.node_count()) / static_cast<double>(coarse.mesh.node_count());
-    EXPECT_LT(ratio, 1.1 * (1 << D));
-    EXPECT_GT(ratio, 0.65 * (1 << D));
-    // From a coarse mesh the same size is reached as from a fine one.
-    const auto direct = adapted<D>(box, uniform(2 * h));
-    const auto nodes = static_cast<double>(coarse.mesh.node_count());
-    EXPECT_NEAR(static_cast<double>(direct.mesh.node_count()), nodes, 0.1 * nodes);
-
-    const auto again = adapted<D>(coarse.mesh, uniform(2 * h));
-    EXPECT_NEAR(static_cast<double>(again.mesh.node_count()), nodes, 0.03 * nodes);
-    const auto first = figures<D>(coarse.mesh, uniform(2 * h));
-    const auto second = figures<D>(again.mesh, uniform(2 * h));
-    EXPECT_GT(second.quality, 0.99 * first.quality);
-    EXPECT_GT(second.unit_edges, 0.99 * first.unit_edges);
-  }
+  const auto again = adapted<D>(coarse.mesh, uniform(2 * h));
+  EXPECT_NEAR(static_cast<double>(again.mesh.node_count()), nodes, 0.03 * nodes);
+  const auto first = figures<D>(coarse.mesh, uniform(2 * h));
+  const auto second = figures<D>(again.mesh, uniform(2 * h));
+  EXPECT_GT(second.quality, 0.99 * first.quality);
+  EXPECT_GT(second.unit_edges, 0.99 * first.unit_edges);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TYPED_TEST(AdaptRun, ThreadsMakeTheSameMesh) {
 TYPED_TEST(AdaptRun, ThreadsMakeTheSameMeshUnderAFunction) {
   constexpr int D = TypeParam::value;
   const MetricFunction<D> metric = [](const Vec<D>& x) {
-    return isotropic_metric<D>((D == 2 ? 0.006 : 0.06) * (1 + x[0]));
+    return isotropic_metric<D>((D == 2 ? 0.006 : 0.05) * (1 + x[0]));
   };
   const auto box = unit_box<D>(D == 2 ? 90 : 12);
   AdaptParams params;
