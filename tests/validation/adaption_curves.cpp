@@ -34,6 +34,7 @@ struct Curve {
   std::string name;
   AdaptParams params;
   std::vector<Row> rows;
+  std::vector<double> seeds;  ///< (1.33) at the end with the seeds 1, 2, ...
   std::optional<Error> error;
 };
 
@@ -41,7 +42,7 @@ struct Curve {
 struct Case {
   std::string name;      ///< of its metric
   std::string figure;    ///< of the thesis
-  std::string enlarged;  ///< the figure that shows its lower end; empty: none
+  std::string enlarged;  ///< the picture that shows its lower end
   std::vector<Curve> curves;
 };
 
@@ -103,24 +104,42 @@ Curve averaging(const std::string& name, MetricMean mean, SizeAverage size = Siz
   return curve;
 }
 
+/// h comes last: without it the others keep their colors.
 std::vector<Curve> averages() {
-  std::vector<Curve> curves = {
-      averaging("M", MetricMean::m), averaging("M^(1/2)", MetricMean::root),
-      averaging("M^(-1/2)", MetricMean::size), averaging("h", MetricMean::h)};
-  // Not of the thesis: the average of logarithms, the mean M in an element.
-  curves.push_back(averaging("log M", MetricMean::log));
-  curves.back().params.element_mean = MetricMean::m;
+  std::vector<Curve> curves = {averaging("M", MetricMean::m),
+                               averaging("M^(1/2)", MetricMean::root),
+                               averaging("M^(-1/2)", MetricMean::size),
+                               averaging("log M", MetricMean::log), averaging("h", MetricMean::h)};
+  // Not of the thesis: logarithms carry the metric to new nodes, elements take the mean of M.
+  curves[3].params.element_mean = MetricMean::m;
   return curves;
 }
 
 constexpr int kIterations = 10;
+/// The isotropic h asks the thin box for so many elements that it stops sooner.
+constexpr int kDenseIterations = 5;
+/// Seeds in 2D, where they cost little: what they spread over tells no averages apart.
+constexpr std::uint64_t kSeeds = 5;
 
 void run_case(const std::string& metric, Curve& curve) {
   if (metric == "thinbox") {
     run_named<3>(curve, box_mesh<3>({2, 10, 10}, Vec<3>::Zero(), Vec<3>(0.1, 1, 1)), metric,
-                 kIterations);
-  } else {
-    run_named<2>(curve, box_mesh<2>({7, 9}, Vec<2>::Zero(), Vec<2>(7, 9)), metric, kIterations);
+                 curve.params.mean == MetricMean::h ? kDenseIterations : kIterations);
+    return;
+  }
+  const SimplexMesh<2> start = box_mesh<2>({7, 9}, Vec<2>::Zero(), Vec<2>(7, 9));
+  run_named<2>(curve, start, metric, kIterations);
+  if (!curve.error) curve.seeds = {curve.rows.back().conformity};
+  for (std::uint64_t seed = 2; seed <= kSeeds && !curve.error; ++seed) {
+    Curve other;
+    other.params = curve.params;
+    other.params.seed = seed;
+    run_named<2>(other, start, metric, kIterations);
+    if (other.error) {
+      curve.error = other.error;
+    } else {
+      curve.seeds.push_back(other.rows.back().conformity);
+    }
   }
 }
 
@@ -155,23 +174,21 @@ std::size_t settled(const Curve& curve) {
 
 std::string summary(const Case& c) {
   std::string table =
-      "| average | nodes at the end | most elements on the way | (1.33), lowest | (1.33) at the "
-      "end | "
+      "| average | nodes at the end | most elements on the way | (1.33) at the end | over the "
+      "seeds | "
       "reached at iteration | invariant at the end | unit edges % | c(T) mean / min |\n"
       "|---|---|---|---|---|---|---|---|---|\n";
   for (const Curve& curve : c.curves) {
     std::size_t most = 0;
-    double lowest = curve.rows.front().conformity;
-    for (const Row& row : curve.rows) {
-      most = std::max(most, row.elements);
-      lowest = std::min(lowest, row.conformity);
-    }
+    for (const Row& row : curve.rows) most = std::max(most, row.elements);
+    const auto [low, high] = std::minmax_element(curve.seeds.begin(), curve.seeds.end());
+    const std::string spread =
+        curve.seeds.empty() ? "not run" : number(*low) + " to " + number(*high);
     const Row& end = curve.rows.back();
     table += "| " + curve.name + " | " + grouped(end.nodes) + " | " + grouped(most) + " | " +
-             number(lowest) + " | " + number(end.conformity) + " | " +
-             std::to_string(settled(curve)) + " | " + number(end.invariant) + " | " +
-             number(100 * end.unit_edges) + " | " + number(end.quality) + " / " +
-             number(end.worst) + " |\n";
+             number(end.conformity) + " | " + spread + " | " + std::to_string(settled(curve)) +
+             " | " + number(end.invariant) + " | " + number(100 * end.unit_edges) + " | " +
+             number(end.quality) + " / " + number(end.worst) + " |\n";
   }
   return table;
 }
@@ -236,7 +253,6 @@ Result<void> write_all(const fs::path& docs, const std::vector<Case>& cases,
     for (const Curve& curve : c.curves) table += tab_separated(c.name, curve);
     for (const bool enlarged : {false, true}) {
       const std::string& figure = enlarged ? c.enlarged : c.figure;
-      if (figure.empty()) continue;
       const Result<void> written = write_file(pictures / ("figure-" + figure + ".svg"),
                                               picture(c, figure, enlarged ? 3 : 0));
       if (!written) return written;
@@ -257,7 +273,7 @@ Result<void> regenerate(const fs::path& docs) {
       {"gb2d-iso", "3.7", "3.8", averages()},
       {"gb2d",
        "3.12",
-       "",
+       "3.12-enlarged",
        {averaging("L2", MetricMean::m), averaging("L1", MetricMean::m, SizeAverage::l1)}}};
   const auto thesis = [](std::size_t nodes, std::size_t elements, double quality, double worst) {
     return Row{.nodes = nodes, .elements = elements, .quality = quality, .worst = worst};
