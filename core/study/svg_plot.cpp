@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace lamella {
 
@@ -10,7 +11,8 @@ namespace {
 
 constexpr double kWidth = 460, kHeight = 230;
 constexpr double kLeft = 58, kRight = 14, kTop = 16, kBottom = 40;
-const char* const kColors[] = {"#0f6b8f", "#d0721b", "#5a7d2b", "#7a5195"};
+const char* const kColors[] = {"#0f6b8f", "#d0721b", "#5a7d2b", "#7a5195", "#b3293d"};
+const char* const kDashes[] = {"none", "7 3", "2.5 3", "10 3 2 3", "5 5"};
 
 std::string f(double v) {
   char text[32];
@@ -34,6 +36,8 @@ std::string open_svg(const std::string& title) {
          escaped(title) + "\">";
 }
 
+bool drawable(double v) { return v > 0 && std::isfinite(v); }
+
 /// A round step that divides [0, top] into about `parts`.
 double nice_step(double top, int parts) {
   const double raw = std::max(top, 1e-12) / parts;
@@ -41,6 +45,24 @@ double nice_step(double top, int parts) {
   for (const double m : {1.0, 2.0, 2.5, 5.0})
     if (m * power >= raw * (1 - 1e-9)) return m * power;
   return 10 * power;
+}
+
+/// Values to mark on a logarithmic axis that holds [low, high], the first <= low, the last >= high.
+std::vector<double> log_ticks(double low, double high) {
+  std::vector<double> ticks;
+  if (high < 4 * low) {
+    const double step = nice_step(std::max(high - low, 1e-3 * high), 4);
+    double k = std::floor(low / step + 1e-9);
+    while (k > 0 && (ticks.size() < 2 || ticks.back() < high)) ticks.push_back(step * k++);
+    if (!ticks.empty()) return ticks;
+  }
+  for (int decade = static_cast<int>(std::floor(std::log10(low)));; ++decade)
+    for (const double m : {1.0, 2.0, 5.0}) {
+      const double v = m * std::pow(10.0, decade);
+      if (v <= low * (1 + 1e-9)) ticks.clear();
+      ticks.push_back(v);
+      if (v >= high * (1 - 1e-9) && ticks.size() > 1) return ticks;
+    }
 }
 
 std::string compact(double v) {
@@ -162,6 +184,81 @@ std::string svg_convergence(const std::vector<Series>& series, const std::string
     legend += 34 + 6.2 * static_cast<double>(name.size());
   }
   return svg + "</svg>";
+}
+
+std::string svg_log_convergence(const std::vector<Series>& series, const std::string& axis,
+                                std::size_t first) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  std::size_t last = first + 1;
+  for (const Series& s : series)
+    for (std::size_t i = first; i < s.values.size(); ++i) {
+      last = std::max(last, i);
+      if (!drawable(s.values[i])) continue;
+      low = std::min(low, s.values[i]);
+      high = std::max(high, s.values[i]);
+    }
+  if (high == 0) low = high = 1;
+  const std::vector<double> ticks = log_ticks(low, high);
+  const double base = std::log(ticks.front()), span = std::log(ticks.back()) - base;
+  const double top = kTop + 34, plot_w = kWidth - kLeft - kRight, plot_h = kHeight - top - kBottom;
+  const auto x_of = [&](std::size_t i) {
+    return kLeft + plot_w * static_cast<double>(i - first) / static_cast<double>(last - first);
+  };
+  const auto y_of = [&](double v) { return top + plot_h * (1 - (std::log(v) - base) / span); };
+
+  std::string svg = open_svg(axis);
+  svg += text(kLeft, 13, "start", axis, " class=\"label\"");
+  double free_below = kHeight;
+  for (const double v : ticks) {
+    svg += line(kLeft, y_of(v), kLeft + plot_w, y_of(v), "class=\"grid\"");
+    // A label that would touch the one below is left out, the powers of ten last.
+    const bool power = std::abs(std::log10(v) - std::round(std::log10(v))) < 1e-9;
+    if (y_of(v) > free_below || (!power && ticks.size() > 8)) continue;
+    svg += text(kLeft - 6, y_of(v) + 4, "end", compact(v));
+    free_below = y_of(v) - 12;
+  }
+  for (std::size_t i = first; i <= last; ++i)
+    svg += text(x_of(i), top + plot_h + 15, "middle", std::to_string(i));
+  svg += line(kLeft, top + plot_h, kLeft + plot_w, top + plot_h, "class=\"axis\"");
+  svg += text(kLeft + plot_w / 2, kHeight - 6, "middle", "iteration", " class=\"label\"");
+  double legend = kLeft;
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    const std::string style =
+        "fill=\"none\" stroke=\"" + std::string(kColors[s % std::size(kColors)]) +
+        "\" stroke-width=\"2\" stroke-dasharray=\"" + kDashes[s % std::size(kDashes)] + "\"";
+    std::string path;
+    bool pen_down = false;
+    for (std::size_t i = first; i < series[s].values.size(); ++i) {
+      const double v = series[s].values[i];
+      if (drawable(v)) path += (pen_down ? "L" : "M") + f(x_of(i)) + " " + f(y_of(v));
+      pen_down = drawable(v);
+    }
+    svg += "<path d=\"" + path + "\" " + style + "><title>" + escaped(series[s].name) +
+           "</title></path>";
+    svg += line(legend, 31, legend + 26, 31, style);
+    svg += text(legend + 31, 35, "start", series[s].name);
+    legend += 46 + 6.6 * static_cast<double>(series[s].name.size());
+  }
+  return svg + "</svg>";
+}
+
+std::string svg_document(const std::vector<std::string>& plots, const std::string& title) {
+  const double width = (kWidth + 20) * static_cast<double>(plots.size());
+  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + f(width) + " " +
+                    f(kHeight) + "\" width=\"" + f(width) + "\" height=\"" + f(kHeight) +
+                    "\">\n<title>" + escaped(title) +
+                    "</title>\n<style>text{font:12px sans-serif;fill:#4a5560}"
+                    ".grid{stroke:#dde3e8}.axis{stroke:#1c2733}.bar{fill:#0f6b8f}"
+                    ".mark{stroke:#b3293d;stroke-dasharray:5 4}.note{fill:#b3293d}"
+                    ".label{fill:#1c2733}</style>\n"
+                    "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+  double x = 0;
+  for (const std::string& plot : plots) {
+    svg += "<svg x=\"" + f(x) + "\" width=\"" + f(kWidth) + "\" height=\"" + f(kHeight) + "\"" +
+           plot.substr(4) + "\n";
+    x += kWidth + 20;
+  }
+  return svg + "</svg>\n";
 }
 
 std::string grouped(std::size_t n) {

@@ -34,6 +34,16 @@ struct Series {
 std::string svg_convergence(const std::vector<Series>& series, const std::string& left_axis,
                             const std::string& right_axis, double goal);
 
+/// Lines over the iteration number, from `first` on, on a logarithmic axis; later series are drawn
+/// dashed over the earlier ones, so that equal ones are seen both. Values that are not positive and
+/// finite leave a gap.
+std::string svg_log_convergence(const std::vector<Series>& series, const std::string& axis,
+                                std::size_t first = 0);
+
+/// Plots of this header side by side as the text of an SVG file of its own, with the styles that
+/// the report has in its page.
+std::string svg_document(const std::vector<std::string>& plots, const std::string& title);
+
 /// 1234567 as "1,234,567".
 std::string grouped(std::size_t n);
 /// Short decimal text with `digits` significant digits.
