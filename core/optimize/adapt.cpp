@@ -30,10 +30,10 @@ std::vector<Stage> stages(const AdaptParams& params) {
   std::vector<Stage> all;
   Stage sizes;
   sizes.sweep.relaxation = params.relaxation;
-  sizes.sweep.good_enough = D == 4 ? 0.7 : 0.5;
+  sizes.sweep.good_enough = D == 4 ? 0.7 : 0.3;
   // In 4D too many of these leave elements that nothing mends afterwards.
   sizes.rounds = D == 4 ? std::min(3, params.relaxed_sweeps) : params.relaxed_sweeps;
-  sizes.settled = 0.4;
+  sizes.settled = D == 3 ? 0.7 : 0.4;
   sizes.count_moves = false;
   all.push_back(sizes);
 
@@ -43,11 +43,11 @@ std::vector<Stage> stages(const AdaptParams& params) {
   average.sweep.collapse_below = 0.8;
   average.sweep.good_enough = D == 2 ? 1 : D == 4 ? 0.8 : 0.6;
   average.rounds = params.sweeps;
-  average.settled = D == 4 ? 0.2 : 0.6;
+  average.settled = D == 4 ? 0.2 : 0.9;
   Stage hot = average;
   hot.rounds = 1;
   hot.sweep.temperature = D == 2 ? 0.35 : 0.6;
-  for (int i = 0; i < (D == 2 ? 10 : 3); ++i) {
+  for (int i = 0; i < (D == 2 ? 10 : D == 4 ? 3 : 2); ++i) {
     all.push_back(hot);
     hot.sweep.temperature *= D == 2 ? 0.9 : 0.7;
   }
@@ -56,7 +56,7 @@ std::vector<Stage> stages(const AdaptParams& params) {
   Stage worst;
   worst.sweep.attention = 0.45;
   worst.sweep.good_enough = 0.45;
-  worst.rounds = 3;
+  worst.rounds = 8;
   worst.settled = 1e-4;
   all.push_back(worst);
   return all;

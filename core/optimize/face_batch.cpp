@@ -277,8 +277,7 @@ void FaceBatch<D>::rate(int group, const RatingKernel<D>& kernel, const Vec<D>& 
 }
 
 template <int D>
-typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const RatingKernel<D>& kernel,
-                                                             const Vec<D>& apex,
+typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const Vec<D>& apex,
                                                              const Packed<D>& apex_carried) {
   Derivatives out;
   alignas(32) Lanes gradient[D] = {}, hessian[packed] = {}, convex[packed] = {};

@@ -384,7 +384,8 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n, bool is_long) {
       if (on_boundary) offer(existing(v), site);
     }
   }
-  if (is_long) {
+  // Where the worst elements are at stake a node in between may free them.
+  if (is_long || sweep_.attention < 1) {
     const Vec<D> e = topo_.points[n] - topo_.points[s];
     const double ls = std::sqrt(metric_[s].quad(e)), ln = std::sqrt(metric_[n].quad(e));
     // The metric length of a linear size field is halved here.

@@ -18,7 +18,7 @@ template <int D>
 std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId s, const BoundarySite& site) {
   const Packed<D>& own = averaged()[s];
   const auto [gradient, hessian, convex, sound] =
-      faces_.derivatives(kernel_, topo_.points[s], own);
+      faces_.derivatives(topo_.points[s], own);
   if (!sound) return std::nullopt;
   Mat<D> basis;
   const int free = free_directions(site, basis);
