@@ -262,7 +262,9 @@ int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& conso
     }
     tell_iteration(i, *report, current.report, console);
   }
-  if (Result<void> done = write_any<D>(c.output, std::move(current.mesh), std::move(current.metric)); !done)
+  if (Result<void> done =
+          write_any<D>(c.output, std::move(current.mesh), std::move(current.metric));
+      !done)
     return console.fail(done.error());
   console.say("wrote " + c.output);
   console.emit(dump({{"phase", "written"}, {"file", c.output}}));

@@ -33,7 +33,8 @@ Result<std::array<T, D>> per_axis(const std::vector<T>& values, const char* opti
 
 template <int D>
 int make_box(const BoxCommand& c, Console& console) {
-  if (Result<void> known = check_output_name(c.output, D); !known) return console.fail(known.error());
+  if (Result<void> known = check_output_name(c.output, D); !known)
+    return console.fail(known.error());
   const auto cells = per_axis<D>(c.cells, "--cells");
   const auto low = per_axis<D>(c.low, "--low"), high = per_axis<D>(c.high, "--high");
   if (!cells) return console.fail(cells.error());
@@ -120,7 +121,8 @@ int undo(const std::vector<fs::path>& files, const Error& error, Console& consol
 
 template <int D>
 int make_slices(const SimplexMesh<D>& mesh, const SliceCommand& c, Console& console) {
-  if (Result<void> known = check_output_name(c.output, D - 1); !known) return console.fail(known.error());
+  if (Result<void> known = check_output_name(c.output, D - 1); !known)
+    return console.fail(known.error());
   const fs::path output = c.output;
   if (output.extension() == ".stl")
     return console.fail({Code::usage, "STL holds no slices.", "Use .vtu, .msh or .mesh."});

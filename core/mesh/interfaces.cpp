@@ -36,8 +36,8 @@ template <int D>
 std::vector<typename SimplexMesh<D>::Facet> blocking_faces(const SimplexMesh<D>& mesh) {
   const auto uses = face_uses<D>(mesh.elements, mesh.points.size());
   const auto wall = [&](std::size_t first, std::size_t last) {
-    return last - first != 2 || mesh.element_body[uses[first].element] !=
-                                    mesh.element_body[uses[first + 1].element];
+    return last - first != 2 ||
+           mesh.element_body[uses[first].element] != mesh.element_body[uses[first + 1].element];
   };
   std::vector<char> on_wall(mesh.points.size(), 0);
   for_each_face<D>(uses, [&](std::size_t first, std::size_t last) {
@@ -54,8 +54,8 @@ std::vector<typename SimplexMesh<D>::Facet> blocking_faces(const SimplexMesh<D>&
   return found;
 }
 
-#define LAMELLA_INSTANTIATE(D)                                              \
-  template SimplexMesh<D> with_interfaces<D>(const SimplexMesh<D>&);        \
+#define LAMELLA_INSTANTIATE(D)                                       \
+  template SimplexMesh<D> with_interfaces<D>(const SimplexMesh<D>&); \
   template std::vector<SimplexMesh<D>::Facet> blocking_faces<D>(const SimplexMesh<D>&);
 LAMELLA_INSTANTIATE(2)
 LAMELLA_INSTANTIATE(3)

@@ -16,8 +16,8 @@ namespace {
 /// Rounds of one kind.
 struct Stage {
   SweepParams sweep;
-  int rounds;      ///< upper bound
-  double settled;  ///< ends when operations fall below this share of the nodes
+  int rounds;               ///< upper bound
+  double settled;           ///< ends when operations fall below this share of the nodes
   bool count_moves = true;  ///< among the operations
 };
 
@@ -46,10 +46,10 @@ std::vector<Stage> stages(const AdaptParams& params) {
   average.settled = D == 4 ? 0.2 : 0.9;
   Stage hot = average;
   hot.rounds = 1;
-  hot.sweep.temperature = D == 2 ? 0.35 : 0.6;
-  for (int i = 0; i < (D == 2 ? 10 : D == 4 ? 3 : 2); ++i) {
+  hot.sweep.temperature = D == 2 ? 0.4 : 0.6;
+  for (int i = 0; i < (D == 2 ? 40 : D == 4 ? 3 : 2); ++i) {
     all.push_back(hot);
-    hot.sweep.temperature *= D == 2 ? 0.9 : 0.7;
+    hot.sweep.temperature *= D == 2 ? 0.975 : 0.7;
   }
   all.push_back(average);
 
@@ -73,9 +73,8 @@ void polish(Stage& stage) {
 template <int D>
 class Adaption {
  public:
-  Adaption(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
-           const BoundaryModel<D>& model, const AdaptParams& params,
-           const MetricFunction<D>& metric_at, double scale)
+  Adaption(const SimplexMesh<D>& mesh, const MetricField<D>& metric, const BoundaryModel<D>& model,
+           const AdaptParams& params, const MetricFunction<D>& metric_at, double scale)
       : model_(model), params_(params), metric_at_(metric_at), scale_(scale) {
     work_.points = mesh.points;
     work_.fixed = model.fixed();
@@ -203,9 +202,13 @@ class Adaption {
 /// Elements a node in a mesh of good elements, and bytes an element takes at the most while a round
 /// is under way, its share of the nodes and the result included (measured, rounded up).
 template <int D>
-constexpr double elements_a_node = D == 2 ? 2 : D == 3 ? 5.5 : 16;
+constexpr double elements_a_node = D == 2   ? 2
+                                   : D == 3 ? 5.5
+                                            : 16;
 template <int D>
-constexpr double bytes_an_element = D == 2 ? 400 : D == 3 ? 220 : 240;
+constexpr double bytes_an_element = D == 2   ? 400
+                                    : D == 3 ? 220
+                                             : 240;
 
 /// (1.34) before the start: nodes and MB.
 template <int D>
@@ -282,8 +285,8 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
     for (int i = 0; i < stage.rounds && !progress.cancelled(); ++i) {
       const double begin = static_cast<double>(past + i) / rounds;
       const std::size_t moves = report.moves;
-      std::size_t done = adaption.round(stage.sweep,
-                                        progress.portion(begin, begin + 1.0 / rounds, "adapting"));
+      std::size_t done =
+          adaption.round(stage.sweep, progress.portion(begin, begin + 1.0 / rounds, "adapting"));
       if (!stage.count_moves) done -= report.moves - moves;
       if (adaption.overfull())
         return over_budget<D>(report, *params.memory_limit, adaption.element_count());

@@ -24,8 +24,8 @@ enum class MetricMean {
 enum class SizeAverage { l2, l1 };
 
 struct AdaptParams {
-  MetricMean mean = MetricMean::size;     ///< carries the metric to new nodes; a metric function
-                                          ///< given to `adapt` goes before it
+  MetricMean mean = MetricMean::size;       ///< carries the metric to new nodes; a metric function
+                                            ///< given to `adapt` goes before it
   MetricMean element_mean = MetricMean::m;  ///< metric of an element from its nodes'
   SizeAverage size_average = SizeAverage::l2;
   std::optional<double> chord_tolerance{};  ///< mm; unset: 1e-3 of the box diagonal
@@ -39,7 +39,7 @@ struct AdaptParams {
   bool treat_blocking = false;  ///< split inner edges and elements that join wall to wall (C.1.1)
   std::vector<std::int32_t> frozen_groups{};  ///< boundary groups whose facets stay as they are
   std::vector<std::int32_t> frozen_bodies{};  ///< bodies whose elements stay as they are
-  std::uint64_t seed = 1;       ///< the order of the work; any seed is as good
+  std::uint64_t seed = 1;                     ///< the order of the work; any seed is as good
 };
 
 /// What `adapt` did.
@@ -49,11 +49,11 @@ struct AdaptReport {
   std::size_t swaps = 0;      ///< cavities reconnected without adding or removing a node
   std::size_t moves = 0;      ///< nodes moved
   int sweeps = 0;
-  bool settled = false;          ///< ended by itself, not by `sweeps`
-  bool cancelled = false;        ///< stopped early: the mesh is valid, and as far as it got
-  double forecast_nodes = 0;     ///< (1.34) before the start
-  double forecast_memory = 0;    ///< MB, of the adaption itself
-  std::size_t blocking = 0;         ///< blocking faces found at the end when asked to treat them
+  bool settled = false;              ///< ended by itself, not by `sweeps`
+  bool cancelled = false;            ///< stopped early: the mesh is valid, and as far as it got
+  double forecast_nodes = 0;         ///< (1.34) before the start
+  double forecast_memory = 0;        ///< MB, of the adaption itself
+  std::size_t blocking = 0;          ///< blocking faces found at the end when asked to treat them
   std::size_t blocking_treated = 0;  ///< of them, opened by a node inside
 };
 

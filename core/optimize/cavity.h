@@ -51,24 +51,26 @@ double power_of_size(double h2) {
 
 /// Energy of a typical element of a good mesh: what an additional element must be worth.
 template <int D>
-inline constexpr double typical_energy = D == 2 ? 1.02 : D == 3 ? 1.2 : 1.4;
+inline constexpr double typical_energy = D == 2   ? 1.02
+                                         : D == 3 ? 1.2
+                                                  : 1.4;
 /// Weight w of the size in the energy.
 template <int D>
-inline constexpr double size_weight = D == 2 ? 1.2 : 0.7;
+inline constexpr double size_weight = D == 2   ? 1.8
+                                      : D == 3 ? 0.7
+                                               : 0.6;
 
 /// Rates the element {face, apex}. Negative quality for an ill oriented or flat one.
 template <int D>
 struct RatingKernel {
   static constexpr double mean = 1.0 / (D + 1);
-  double relaxation = 1;    ///< of the shape
+  double relaxation = 1;  ///< of the shape
   MetricMean element_mean = MetricMean::m;
   SizeAverage size_average = SizeAverage::l2;
   const std::vector<Vec<D>>* points = nullptr;
 
   /// (3.2) and (3.4), the fast case.
-  bool plain() const {
-    return element_mean == MetricMean::m && size_average == SizeAverage::l2;
-  }
+  bool plain() const { return element_mean == MetricMean::m && size_average == SizeAverage::l2; }
   /// Metric of the element, (3.2), (3.12) or (3.16), from the sum of what its nodes carry.
   Packed<D> element_metric(const RealFace<D>& f, const Packed<D>& apex_carried) const {
     Packed<D> m = f.metric_sum;

@@ -3,7 +3,8 @@
 #include <algorithm>
 
 // The same source for processors with and without wide vectors, chosen when the program starts.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define LAMELLA_VECTOR __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
 #define LAMELLA_VECTOR
@@ -82,8 +83,7 @@ LAMELLA_INLINE Quad power(Quad h2) {
 
 template <int D>
 LAMELLA_INLINE void rate_group(const Group<D>& g, const double* apex, const double* carried,
-                               double relaxation, double weight, double* quality,
-                               double* energy) {
+                               double relaxation, double weight, double* quality, double* energy) {
   Shapes<D> s;
   shapes<D>(g, apex, carried, s);
   const Quad h = power<D>(s.size), inverse = 1 / h, measure = s.volume * s.scale;
@@ -92,8 +92,7 @@ LAMELLA_INLINE void rate_group(const Group<D>& g, const double* apex, const doub
   Quad w2 = s.w[0] * s.w[0];
   for (int k = 1; k < D; ++k) w2 += s.w[k] * s.w[k];
   // Flat within rounding, or ill oriented.
-  const auto sound =
-      (s.volume > 0) & (s.volume * s.volume > 1e-22 * (load(g.normal2) * w2));
+  const auto sound = (s.volume > 0) & (s.volume * s.volume > 1e-22 * (load(g.normal2) * w2));
   constexpr double infinity = std::numeric_limits<double>::infinity();
   store(quality, sound ? q : Quad{-1, -1, -1, -1});
   store(energy, sound ? e : Quad{infinity, infinity, infinity, infinity});
@@ -101,8 +100,8 @@ LAMELLA_INLINE void rate_group(const Group<D>& g, const double* apex, const doub
 
 template <int D>
 LAMELLA_INLINE bool derive_group(const Group<D>& g, const double* apex, const double* carried,
-                                 double weight, double (*gradient)[width],
-                                 double (*hessian)[width], double (*convex)[width]) {
+                                 double weight, double (*gradient)[width], double (*hessian)[width],
+                                 double (*convex)[width]) {
   constexpr double p = 0.5 * D, c = 4.0 / (D + 1);
   Shapes<D> s;
   shapes<D>(g, apex, carried, s);
@@ -154,22 +153,21 @@ LAMELLA_INLINE void triangles(Group<3>& g) {
   store(g.normal2, n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   for (int i = 0, k = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j, ++k)
-      store(g.edges[k],
-            (i == j ? 4.0 / 3 : 8.0 / 3) * (a[i] * a[j] + b[i] * b[j] + d[i] * d[j]));
+      store(g.edges[k], (i == j ? 4.0 / 3 : 8.0 / 3) * (a[i] * a[j] + b[i] * b[j] + d[i] * d[j]));
 }
 
 LAMELLA_VECTOR void triangles_of(Group<3>& g) { triangles(g); }
 
-#define LAMELLA_DIMENSION(D)                                                                      \
-  LAMELLA_VECTOR void rate_lanes(const Group<D>& g, const double* apex, const double* carried,    \
-                                 double relaxation, double weight, double* quality,               \
-                                 double* energy) {                                                \
-    rate_group<D>(g, apex, carried, relaxation, weight, quality, energy);                         \
-  }                                                                                               \
-  LAMELLA_VECTOR bool derive_lanes(const Group<D>& g, const double* apex, const double* carried,  \
-                                   double weight, double (*gradient)[width],                      \
-                                   double (*hessian)[width], double (*convex)[width]) {           \
-    return derive_group<D>(g, apex, carried, weight, gradient, hessian, convex);                  \
+#define LAMELLA_DIMENSION(D)                                                                     \
+  LAMELLA_VECTOR void rate_lanes(const Group<D>& g, const double* apex, const double* carried,   \
+                                 double relaxation, double weight, double* quality,              \
+                                 double* energy) {                                               \
+    rate_group<D>(g, apex, carried, relaxation, weight, quality, energy);                        \
+  }                                                                                              \
+  LAMELLA_VECTOR bool derive_lanes(const Group<D>& g, const double* apex, const double* carried, \
+                                   double weight, double(*gradient)[width],                      \
+                                   double(*hessian)[width], double(*convex)[width]) {            \
+    return derive_group<D>(g, apex, carried, weight, gradient, hessian, convex);                 \
   }
 LAMELLA_DIMENSION(2)
 LAMELLA_DIMENSION(3)
@@ -272,8 +270,8 @@ void FaceBatch<D>::rate(int group, const RatingKernel<D>& kernel, const Vec<D>& 
     return;
   }
   derive(group);
-  rate_lanes(groups_[group], apex.data(), apex_carried.c.data(), kernel.relaxation,
-             size_weight<D>, rates.quality, rates.energy);
+  rate_lanes(groups_[group], apex.data(), apex_carried.c.data(), kernel.relaxation, size_weight<D>,
+             rates.quality, rates.energy);
 }
 
 template <int D>

@@ -21,7 +21,8 @@ bool StarOptimizer<D>::node_site(NodeId s, BoundarySite& site) {
   site.boundary = !virtual_faces_.empty();
   if (!site.boundary) return true;
   collect_ring(s);
-  if constexpr (D == 2) return ring_.size() == 2 && !model_.hard(ring_[0].tags[0], ring_[1].tags[0]);
+  if constexpr (D == 2)
+    return ring_.size() == 2 && !model_.hard(ring_[0].tags[0], ring_[1].tags[0]);
   if constexpr (D == 3) {
     int features = 0;
     for (const auto& r : ring_) {
@@ -43,19 +44,20 @@ bool StarOptimizer<D>::edge_site(NodeId s, NodeId n, BoundarySite& site) {
   site.anchor = 0.5 * (topo_.points[s] + topo_.points[n]);
   site.boundary = !virtual_faces_.empty();
   for (auto e : cavity_)
-    if (topo_.is_virtual(e) ? model_.frozen_tag(topo_.label[e]) : model_.frozen_body(topo_.label[e]))
+    if (topo_.is_virtual(e) ? model_.frozen_tag(topo_.label[e])
+                            : model_.frozen_body(topo_.label[e]))
       return false;
   if (!site.boundary) return true;
   site.second = &topo_.points[s];
   // Around an edge of a surface two virtual elements, with two faces each.
   if constexpr (D == 3)
-    site.on_feature = virtual_faces_.size() != 4 ||
-                      model_.hard(topo_.label[virtual_faces_[0].element],
-                                  topo_.label[virtual_faces_[2].element]);
+    site.on_feature =
+        virtual_faces_.size() != 4 ||
+        model_.hard(topo_.label[virtual_faces_[0].element], topo_.label[virtual_faces_[2].element]);
   if constexpr (D == 4)
     for (const auto& f : virtual_faces_)
-      site.on_feature = site.on_feature || model_.hard(topo_.label[virtual_faces_[0].element],
-                                                       topo_.label[f.element]);
+      site.on_feature = site.on_feature ||
+                        model_.hard(topo_.label[virtual_faces_[0].element], topo_.label[f.element]);
   return true;
 }
 
@@ -166,8 +168,8 @@ bool StarOptimizer<D>::borders_allow(const Apex& apex, const BoundarySite& site)
 }
 
 /// The new boundary facets of an apex against the surface: nowhere turned, near the anchor
-/// that is removed, and within the chord tolerance of the original surface; so must the feature edges from
-/// the apex to its ends be. Fills retag_.
+/// that is removed, and within the chord tolerance of the original surface; so must the feature
+/// edges from the apex to its ends be. Fills retag_.
 template <int D>
 bool StarOptimizer<D>::boundary_allows(const Apex& apex, const BoundarySite& site) {
   const Vec<D>& anchor = site.anchor;
@@ -264,8 +266,8 @@ bool StarOptimizer<D>::topology_allows(const Apex& apex, const BoundarySite& sit
   for (auto e : topo_.around.of(apex.node)) {
     if (!topo_.is_virtual(e)) continue;
     const Element& nodes = topo_.elements[e];
-    const bool inside = Topology<D>::has(nodes, site.a) &&
-                        (site.b == 0 || Topology<D>::has(nodes, site.b));
+    const bool inside =
+        Topology<D>::has(nodes, site.a) && (site.b == 0 || Topology<D>::has(nodes, site.b));
     if (inside) continue;
     for (NodeId x : nodes) {
       if (x == 0 || x == apex.node) continue;
@@ -283,7 +285,7 @@ bool StarOptimizer<D>::topology_allows(const Apex& apex, const BoundarySite& sit
   return true;
 }
 
-#define LAMELLA_INSTANTIATE(D)                                                                     \
+#define LAMELLA_INSTANTIATE(D)                                                                    \
   template bool StarOptimizer<D>::node_site(NodeId, BoundarySite&);                               \
   template bool StarOptimizer<D>::edge_site(NodeId, NodeId, BoundarySite&);                       \
   template std::optional<Vec<D>> StarOptimizer<D>::point_on_boundary(const Vec<D>&, bool, double) \

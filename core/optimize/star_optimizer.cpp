@@ -36,8 +36,8 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
       plain_(params.element_mean == MetricMean::m),
       shared_(std::move(block.shared)) {
   WorkMesh<D>& mesh = block.mesh;
-  topo_ = Topology<D>::from(std::move(mesh.points), std::move(mesh.elements),
-                            std::move(mesh.label));
+  topo_ =
+      Topology<D>::from(std::move(mesh.points), std::move(mesh.elements), std::move(mesh.label));
   metric_ = std::move(mesh.metric);
   asked_ = std::move(mesh.asked);
   fixed_ = std::move(mesh.fixed);
@@ -51,8 +51,7 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
   place_.resize(topo_.points.size());
   if (!plain_) {
     own_averaged_.resize(topo_.points.size());
-    for (std::size_t n = 1; n < metric_.size(); ++n)
-      own_averaged_[n] = averager_.carry(metric_[n]);
+    for (std::size_t n = 1; n < metric_.size(); ++n) own_averaged_[n] = averager_.carry(metric_[n]);
   }
   kernel_.element_mean = params.element_mean;
   kernel_.size_average = params.size_average;
@@ -127,8 +126,7 @@ std::size_t StarOptimizer<D>::improve_edges(NodeId s, std::uint32_t before) {
     star_.clear();
     for (auto e : topo_.around.of(s))
       if (Topology<D>::has(topo_.elements[e], n)) star_.push_back(e);
-    const bool is_long =
-        l2 > split2 && longest(s, n, l2 / (nearly_longest * nearly_longest));
+    const bool is_long = l2 > split2 && longest(s, n, l2 / (nearly_longest * nearly_longest));
     if (!is_long && owned_[i].worst > sweep_.good_enough) continue;
     if (!process_edge(s, n, is_long)) continue;
     ++operations;
@@ -265,7 +263,7 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
     if (by_energy && sum > limit) return false;
   }
   if (by_energy) {
-    trial_cost_ = sum + (1 - typical_energy<D>) * count;
+    trial_cost_ = sum + (1 - typical_energy<D>)*count;
     return trial_cost_ < best_cost_ - least_gain;
   }
   if (trial_worst_ != best_worst_) return true;

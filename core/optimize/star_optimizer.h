@@ -20,14 +20,14 @@ enum class Criterion {
 /// One pass over a block.
 struct SweepParams {
   Criterion criterion = Criterion::order;
-  double relaxation = 1;      ///< weight of the shape in the quality
-  double split_above = 1.41;  ///< metric length above which an edge may get a node
+  double relaxation = 1;         ///< weight of the shape in the quality
+  double split_above = 1.41;     ///< metric length above which an edge may get a node
   double collapse_below = 0.71;  ///< metric length below which a node may join its neighbor
-  double good_enough = 0.7;  ///< c(T) above which elements are not reconnected
-  double temperature = 0;    ///< energy that a reconnection may cost, at random
+  double good_enough = 0.7;      ///< c(T) above which elements are not reconnected
+  double temperature = 0;        ///< energy that a reconnection may cost, at random
   std::size_t most_elements = std::numeric_limits<std::size_t>::max();  ///< of a block
-  bool moves_only = false;   ///< nodes move, nothing is reconnected
-  double attention = 2;      ///< c(T) above which nodes are left alone altogether
+  bool moves_only = false;  ///< nodes move, nothing is reconnected
+  double attention = 2;     ///< c(T) above which nodes are left alone altogether
 };
 
 /// The working state of algorithm 3.1 on one block of the mesh: cuts the cavity around a node or an
@@ -42,8 +42,8 @@ class StarOptimizer {
   /// turn. Returns the number of operations; stops early when cancelled.
   std::size_t sweep(const SweepParams& params, const Progress& progress);
   /// Puts a node into every inner edge between two boundary nodes, then into every inner face whose
-  /// nodes all lie on the boundary, wherever the elements stay well oriented (C.1.1). The block must
-  /// be the whole mesh. Returns the number of new nodes.
+  /// nodes all lie on the boundary, wherever the elements stay well oriented (C.1.1). The block
+  /// must be the whole mesh. Returns the number of new nodes.
   std::size_t open_blocking(const Progress& progress);
   /// Whether the sweep stopped because the block grew beyond its bound.
   bool overfull() const { return overfull_; }
@@ -129,18 +129,18 @@ class StarOptimizer {
   SweepParams sweep_;
   AdaptReport counts_;
   bool overfull_ = false;
-  double flat_;                         ///< mm, below which a height counts as zero
-  std::vector<Packed<D>> metric_;       ///< [node]
-  mutable std::vector<Packed<D>> carried_;    ///< [node] what new nodes average of the metric
-  mutable std::vector<char> carried_known_;   ///< [node]
-  std::vector<Packed<D>> own_averaged_; ///< [node] what elements average, if not the metric itself
-  bool plain_;                          ///< elements average the metric itself
-  std::vector<char> dirty_;             ///< [node] as it came
-  std::vector<Vec<D>> asked_;           ///< [node] where the metric function was asked last
-  std::vector<char> fixed_;             ///< [node]
-  std::vector<NodeId> shared_;          ///< [node] global id of a locked node, else 0
-  std::vector<Rating> rating_;          ///< [element] virtual: infinite quality, no energy
-  std::vector<std::uint32_t> done_;     ///< [node] clock of its last turn
+  double flat_;                              ///< mm, below which a height counts as zero
+  std::vector<Packed<D>> metric_;            ///< [node]
+  mutable std::vector<Packed<D>> carried_;   ///< [node] what new nodes average of the metric
+  mutable std::vector<char> carried_known_;  ///< [node]
+  std::vector<Packed<D>> own_averaged_;  ///< [node] what elements average, if not the metric itself
+  bool plain_;                           ///< elements average the metric itself
+  std::vector<char> dirty_;              ///< [node] as it came
+  std::vector<Vec<D>> asked_;            ///< [node] where the metric function was asked last
+  std::vector<char> fixed_;              ///< [node]
+  std::vector<NodeId> shared_;           ///< [node] global id of a locked node, else 0
+  std::vector<Rating> rating_;           ///< [element] virtual: infinite quality, no energy
+  std::vector<std::uint32_t> done_;      ///< [node] clock of its last turn
 
   // Scratch of the open cavity; kept to allocate nothing in the sweep.
   std::vector<std::int32_t> cavity_;

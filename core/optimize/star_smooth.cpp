@@ -17,8 +17,7 @@ constexpr double short_move2 = 0.01;
 template <int D>
 std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId s, const BoundarySite& site) {
   const Packed<D>& own = averaged()[s];
-  const auto [gradient, hessian, convex, sound] =
-      faces_.derivatives(topo_.points[s], own);
+  const auto [gradient, hessian, convex, sound] = faces_.derivatives(topo_.points[s], own);
   if (!sound) return std::nullopt;
   Mat<D> basis;
   const int free = free_directions(site, basis);
@@ -95,9 +94,8 @@ void StarOptimizer<D>::offer_moves(NodeId s, const BoundarySite& site) {
   if (weight > 0) offer_at(center / weight);
 }
 
-#define LAMELLA_INSTANTIATE(D)                                                          \
-  template std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId,                  \
-                                                               const BoundarySite&);       \
+#define LAMELLA_INSTANTIATE(D)                                                               \
+  template std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId, const BoundarySite&); \
   template void StarOptimizer<D>::offer_moves(NodeId, const BoundarySite&);
 LAMELLA_INSTANTIATE(2)
 LAMELLA_INSTANTIATE(3)

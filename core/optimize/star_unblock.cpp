@@ -51,8 +51,7 @@ std::size_t StarOptimizer<D>::open_blocking(const Progress& progress) {
     if (progress.cancelled()) break;
     for (int k = 0; k <= D && topo_.alive(e) && !topo_.is_virtual(e); ++k) {
       const Facet face = opposite_facet<D>(topo_.elements[e], k);
-      if (!std::all_of(face.begin(), face.end(),
-                       [&](NodeId n) { return n < count && on_wall[n]; }))
+      if (!std::all_of(face.begin(), face.end(), [&](NodeId n) { return n < count && on_wall[n]; }))
         continue;
       std::int32_t other = -1;
       for (auto i : topo_.around.of(face[0])) {

@@ -13,11 +13,11 @@ template <int D>
 struct WorkMesh {
   using Element = std::array<NodeId, D + 1>;
 
-  std::vector<Vec<D>> points{Vec<D>::Zero()};   ///< [node]; entry 0 is the virtual node
-  std::vector<Packed<D>> metric{Packed<D>{}};   ///< [node]
-  std::vector<Vec<D>> asked{Vec<D>::Zero()};    ///< [node] where the metric function was asked last
-  std::vector<char> fixed{0};                   ///< [node] never moves nor disappears
-  std::vector<char> dirty{0};                   ///< [node] has surroundings not looked at yet
+  std::vector<Vec<D>> points{Vec<D>::Zero()};  ///< [node]; entry 0 is the virtual node
+  std::vector<Packed<D>> metric{Packed<D>{}};  ///< [node]
+  std::vector<Vec<D>> asked{Vec<D>::Zero()};   ///< [node] where the metric function was asked last
+  std::vector<char> fixed{0};                  ///< [node] never moves nor disappears
+  std::vector<char> dirty{0};                  ///< [node] has surroundings not looked at yet
   std::vector<Element> elements;
   std::vector<std::int32_t> label;  ///< [element] body; of a virtual one: tag
 
@@ -45,9 +45,9 @@ class Partition {
   Block<D> extract(const WorkMesh<D>& mesh, int block) const;
 
  private:
-  std::vector<std::int32_t> order_;        // elements, by block
-  std::vector<std::int32_t> first_;        // [block] into order_
-  std::vector<std::int32_t> node_block_;   // [node] -1 where blocks meet
+  std::vector<std::int32_t> order_;       // elements, by block
+  std::vector<std::int32_t> first_;       // [block] into order_
+  std::vector<std::int32_t> node_block_;  // [node] -1 where blocks meet
   std::vector<char> pending_;
 };
 
