@@ -110,9 +110,8 @@ class Bench {
   void wake_all() { work_.dirty.assign(work_.points.size(), 1); }
   SimplexMesh<D> mesh() const { return simplex_mesh<D>(work_, model_); }
   std::size_t real_elements() const { return mesh().elements.size(); }
-  std::vector<Rating> ratings(double size_weight = 1) const {
+  std::vector<Rating> ratings() const {
     RatingKernel<D> kernel;
-    kernel.size_weight = size_weight;
     std::vector<Rating> all;
     Topology<D> topo;
     topo.points = work_.points;
@@ -179,19 +178,15 @@ TYPED_TEST(StarOptimizers, TheOrderNeverFalls) {
 TYPED_TEST(StarOptimizers, MovesNeverRaiseTheEnergy) {
   constexpr int D = TypeParam::value;
   std::mt19937 rng(90 + D);
-  const double weight = D == 2 ? 1.2 : 0.7;  // of the size, as the optimizer has it
   for (const auto& [name, metric] : metrics<D>(D == 2 ? 0.1 : D == 3 ? 0.2 : 0.4, rng)) {
     SCOPED_TRACE(name);
     Bench<D> bench(shaken_box<D>(D == 2 ? 9 : D == 3 ? 5 : 3, rng), metric);
-    // Neither splits, nor collapses, nor reconnections: the number of elements stays.
     SweepParams params;
     params.criterion = Criterion::energy;
-    params.split_above = 1e30;
-    params.collapse_below = 0;
-    params.good_enough = -1;
+    params.moves_only = true;
     const auto sum = [&] {
       double s = 0;
-      for (const Rating& r : bench.ratings(weight)) s += r.energy;
+      for (const Rating& r : bench.ratings()) s += r.energy;
       return s;
     };
     const double worst = bench.sorted_qualities()[0];
@@ -200,7 +195,7 @@ TYPED_TEST(StarOptimizers, MovesNeverRaiseTheEnergy) {
     std::size_t operations = 0;
     for (int i = 0; i < 4; ++i) {
       operations += bench.sweep(params);
-      if (bench.real_elements() != elements) break;  // a poor node may join a neighbor
+      ASSERT_EQ(bench.real_elements(), elements);
       const double after = sum();
       EXPECT_LE(after, before * (1 + 1e-12)) << "sweep " << i;
       before = after;
@@ -235,10 +230,6 @@ TYPED_TEST(StarOptimizers, TheEnergyCriterionSparesTheWorst) {
 TYPED_TEST(StarOptimizers, TheEnergyAboveThatOfTypicalElementsNeverRises) {
   constexpr int D = TypeParam::value;
   std::mt19937 rng(120 + D);
-  const double weight = D == 2 ? 1.2 : 0.7;
-  // Whatever the energy t of a typical element: sweeps with n more elements may cost n t at most,
-  // those with n fewer must gain n t at least.
-  double low = 0, high = std::numeric_limits<double>::infinity();
   for (const double h : {D == 4 ? 0.35 : 0.1, D == 4 ? 0.8 : 0.3})
     for (const auto& [name, metric] : metrics<D>(h, rng)) {
       SCOPED_TRACE(name);
@@ -247,26 +238,19 @@ TYPED_TEST(StarOptimizers, TheEnergyAboveThatOfTypicalElementsNeverRises) {
       params.criterion = Criterion::energy;
       const auto sum = [&] {
         double s = 0;
-        for (const Rating& r : bench.ratings(weight)) s += r.energy;
+        for (const Rating& r : bench.ratings()) s += r.energy - typical_energy<D>;
         return s;
       };
       double before = sum();
-      auto elements = static_cast<double>(bench.real_elements());
+      std::size_t operations = 0;
       for (int i = 0; i < 6; ++i) {
-        bench.sweep(params);
-        const double after = sum(), now = static_cast<double>(bench.real_elements());
-        if (now == elements) {
-          EXPECT_LE(after, before * (1 + 1e-12)) << "sweep " << i;
-        }
-        if (now > elements) low = std::max(low, (after - before) / (now - elements));
-        if (now < elements) high = std::min(high, (after - before) / (now - elements));
+        operations += bench.sweep(params);
+        const double after = sum();
+        EXPECT_LE(after, before + 1e-12 * std::abs(before)) << "sweep " << i;
         before = after;
-        elements = now;
       }
+      EXPECT_GT(operations, 0u);
     }
-  EXPECT_LE(low, high * (1 + 1e-12));
-  EXPECT_LT(high, 1e3) << "no sweep removed elements";
-  EXPECT_GT(low, 0) << "no sweep added elements at a cost";
 }
 
 TYPED_TEST(StarOptimizers, ASweepWithNothingNewDoesNothing) {
