@@ -275,11 +275,30 @@ void FaceBatch<D>::rate(int group, const RatingKernel<D>& kernel, const Vec<D>& 
 }
 
 template <int D>
-typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const Vec<D>& apex,
+typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const RatingKernel<D>& kernel,
+                                                             const Vec<D>& apex,
                                                              const Packed<D>& apex_carried) {
   Derivatives out;
-  alignas(32) Lanes gradient[D] = {}, hessian[packed] = {}, convex[packed] = {};
-  const auto sum_up = [&](int lanes) {
+  for (int g = 0; g < groups(); ++g) {
+    derive(g);
+    alignas(32) Lanes gradient[D] = {}, hessian[packed] = {}, convex[packed] = {};
+    const int lanes = std::min(width, size() - g * width);
+    if (kernel.plain()) {
+      out.sound = derive_lanes(groups_[g], apex.data(), apex_carried.c.data(), size_weight<D>,
+                               gradient, hessian, convex);
+    } else {
+      // The metric of each element, as if the apex had no part in it.
+      Group held = groups_[g];
+      for (int l = 0; l < width; ++l) {
+        const Packed<D> m =
+            kernel.element_metric(real(std::min(g * width + l, size() - 1)), apex_carried);
+        for (int k = 0; k < packed; ++k) held.metric[k][l] = (D + 1) * m.c[k];
+      }
+      out.sound = derive_lanes(held, apex.data(), Packed<D>::zero().c.data(), size_weight<D>,
+                               gradient, hessian, convex);
+    }
+    if (!out.sound) return out;
+    // The lanes behind the last face are left out of the sum.
     for (int l = 0; l < lanes; ++l) {
       for (int k = 0; k < D; ++k) out.gradient[k] += gradient[k][l];
       for (int k = 0; k < packed; ++k) {
@@ -287,26 +306,6 @@ typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const Vec<D>& apex,
         out.convex.c[k] += convex[k][l];
       }
     }
-  };
-  const int full = size() / width;
-  for (int g = 0; g < full; ++g) {
-    derive(g);
-    if (!derive_lanes(groups_[g], apex.data(), apex_carried.c.data(), size_weight<D>, gradient,
-                      hessian, convex)) {
-      out.sound = false;
-      return out;
-    }
-  }
-  sum_up(width);
-  if (full < groups()) {
-    // The lanes behind the last face are left out of the sum.
-    std::fill_n(&gradient[0][0], D * width, 0.0);
-    std::fill_n(&hessian[0][0], packed * width, 0.0);
-    std::fill_n(&convex[0][0], packed * width, 0.0);
-    derive(full);
-    out.sound = derive_lanes(groups_[full], apex.data(), apex_carried.c.data(), size_weight<D>,
-                             gradient, hessian, convex);
-    sum_up(size() - full * width);
   }
   return out;
 }

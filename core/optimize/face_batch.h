@@ -49,7 +49,8 @@ class FaceBatch {
   Rating rate_one(int i, const RatingKernel<D>& kernel, const Vec<D>& apex,
                   const Packed<D>& apex_carried);
   /// Of the energy in the position of an apex whose metric is held.
-  Derivatives derivatives(const Vec<D>& apex, const Packed<D>& apex_carried);
+  Derivatives derivatives(const RatingKernel<D>& kernel, const Vec<D>& apex,
+                          const Packed<D>& apex_carried);
   /// One face, taken out.
   RealFace<D> real(int i);
 

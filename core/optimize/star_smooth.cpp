@@ -17,7 +17,7 @@ constexpr double short_move2 = 0.01;
 template <int D>
 std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId s, const BoundarySite& site) {
   const Packed<D>& own = averaged()[s];
-  const auto [gradient, hessian, convex, sound] = faces_.derivatives(topo_.points[s], own);
+  const auto [gradient, hessian, convex, sound] = faces_.derivatives(kernel_, topo_.points[s], own);
   if (!sound) return std::nullopt;
   Mat<D> basis;
   const int free = free_directions(site, basis);
@@ -46,8 +46,8 @@ std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId s, const BoundarySite
     return step.allFinite() && step.dot(gradient) < 0;
   };
   if (!solve(hessian) && !solve(convex)) return std::nullopt;
-  const double length2 = own.quad(step);
-  if (metric_[s].quad(step) < idle_move2) return std::nullopt;
+  const double length2 = metric_[s].quad(step);
+  if (length2 < idle_move2) return std::nullopt;
   if (length2 > 1) step /= std::sqrt(length2);
   return step;
 }

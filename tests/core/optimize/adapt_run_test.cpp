@@ -104,10 +104,12 @@ TYPED_TEST(AdaptRun, ACancelFromTheSinkLeavesAValidMesh) {
     SCOPED_TRACE(tenth);
     std::stop_source stop;
     Clock::time_point asked;
+    double at = 0;
     const Progress progress(
         [&](double fraction, std::string_view) {
           if (fraction >= 0.1 * tenth && !stop.stop_requested()) {
             asked = Clock::now();
+            at = fraction;
             stop.request_stop();
           }
         },
@@ -115,7 +117,11 @@ TYPED_TEST(AdaptRun, ACancelFromTheSinkLeavesAValidMesh) {
     const auto r = adapt<D>(job.box, job.field, nullptr, {}, progress);
     slowest = std::max(slowest, std::chrono::duration<double>(Clock::now() - asked).count());
     expect_sound(job, r);
-    EXPECT_TRUE(r->report.cancelled);
+    // An adaption that settles early may be done when the fraction is passed.
+    EXPECT_EQ(r->report.cancelled, at < 1);
+    if (tenth <= 5) {
+      EXPECT_LT(at, 1);
+    }
   }
   this->RecordProperty("seconds_from_cancel_to_return", std::to_string(slowest));
 }
