@@ -27,6 +27,8 @@ constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations sha
 // Adaption watches a lattice of points of each boundary facet; those between may lie farther off.
 constexpr double kMaxGuardShare = 0.9;
 constexpr double kMinGuardShare = 0.3;
+// The best elements on average are a little larger than unit; layers are promised, not averages.
+constexpr double kAskedFiner = 1.05;
 constexpr double kSettled = 0.05;  // relative change of the node count
 
 constexpr double kGained = 0.02;  // relative rise of the score that is worth another iteration
@@ -82,7 +84,9 @@ class BodyLoop {
     params.threads = options_.threads;
     // Asked at every accepted point, the detector keeps walls from blurring into their neighbors:
     // two rounds reach what the nodal field does not in six.
-    const auto natural = [this](const Vec<3>& x) { return detector_->at(x, natural_).metric; };
+    const auto natural = [this](const Vec<3>& x) -> Metric<3> {
+      return detector_->at(x, natural_).metric * (kAskedFiner * kAskedFiner);
+    };
     Result<Adapted<3>> adapted = adapt<3>(current_.mesh, current_.metric, &part_.surface, params,
                                           progress.portion(0, 0.8), natural);
     if (!adapted) return give_up(adapted.error());
