@@ -69,6 +69,21 @@ bool is_spd(const Mat<D>& m) {
   return m.llt().info() == Eigen::Success;
 }
 
+template <int D>
+Result<void> check_metric(const MetricField<D>& metric, std::size_t nodes) {
+  if (metric.size() != nodes + 1)
+    return Error{Code::bad_input,
+                 "The metric has " + std::to_string(metric.empty() ? 0 : metric.size() - 1) +
+                     " values for " + std::to_string(nodes) + " nodes.",
+                 "Give one metric a node, in the order of the nodes."};
+  for (std::size_t n = 1; n < metric.size(); ++n)
+    if (!is_spd<D>(metric[n]))
+      return Error{Code::bad_input,
+                   "The metric of node " + std::to_string(n) + " is not positive definite.",
+                   "Sizes must be positive and finite in every direction."};
+  return {};
+}
+
 std::vector<Vec<2>> unit_ball(const Metric<2>& m, int count) {
   const Mat<2> root = metric_power<2>(m, -0.5);
   std::vector<Vec<2>> points(count);
@@ -113,15 +128,16 @@ Mat<D> simplex_metric_inverse(const std::array<Vec<D>, D + 1>& p) {
   return 2 * c;
 }
 
-#define LAMELLA_INSTANTIATE(D)                                            \
-  template Spectrum<D> spectrum<D>(const Mat<D>&);                        \
-  template Vec<D> sizes<D>(const Metric<D>&);                             \
-  template Metric<D> metric_from_sizes<D>(const Mat<D>&, const Vec<D>&);  \
-  template Mat<D> metric_power<D>(const Metric<D>&, double);              \
-  template Mat<D> metric_log<D>(const Metric<D>&);                        \
-  template Metric<D> metric_exp<D>(const Mat<D>&);                        \
-  template bool is_spd<D>(const Mat<D>&);                                 \
-  template Metric<D> simplex_metric<D>(const std::array<Vec<D>, D + 1>&); \
+#define LAMELLA_INSTANTIATE(D)                                               \
+  template Spectrum<D> spectrum<D>(const Mat<D>&);                           \
+  template Vec<D> sizes<D>(const Metric<D>&);                                \
+  template Metric<D> metric_from_sizes<D>(const Mat<D>&, const Vec<D>&);     \
+  template Mat<D> metric_power<D>(const Metric<D>&, double);                 \
+  template Mat<D> metric_log<D>(const Metric<D>&);                           \
+  template Metric<D> metric_exp<D>(const Mat<D>&);                           \
+  template bool is_spd<D>(const Mat<D>&);                                    \
+  template Result<void> check_metric<D>(const MetricField<D>&, std::size_t); \
+  template Metric<D> simplex_metric<D>(const std::array<Vec<D>, D + 1>&);    \
   template Mat<D> simplex_metric_inverse<D>(const std::array<Vec<D>, D + 1>&);
 LAMELLA_INSTANTIATE(2)
 LAMELLA_INSTANTIATE(3)

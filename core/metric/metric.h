@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/geometry/simplex.h"
 
 namespace lamella {
@@ -66,6 +67,11 @@ Metric<D> metric_exp(const Mat<D>& symmetric);
 /// Finite, symmetric up to rounding and positive definite.
 template <int D>
 bool is_spd(const Mat<D>& m);
+
+/// Whether the field has one metric for each of `nodes` nodes, all of them positive definite.
+/// Errors: bad_input.
+template <int D>
+Result<void> check_metric(const MetricField<D>& metric, std::size_t nodes);
 
 /// Point of the unit ball of M in the direction of the unit vector u of the reference sphere:
 /// M^(-1/2) u, (A.1) and (A.2).

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/base/parallel.h"
 #include "core/mesh/interfaces.h"
@@ -39,17 +40,17 @@ std::vector<Stage> stages(const AdaptParams& params) {
 
   Stage average;
   average.sweep.criterion = Criterion::energy;
-  average.sweep.split_above = 1.3;
-  average.sweep.collapse_below = 0.8;
+  average.sweep.split_above = D == 2 ? 1.2 : 1.3;
+  average.sweep.collapse_below = D == 2 ? 0.9 : 0.8;
   average.sweep.good_enough = D == 2 ? 1 : D == 4 ? 0.8 : 0.6;
   average.rounds = params.sweeps;
   average.settled = D == 4 ? 0.2 : 0.9;
   Stage hot = average;
   hot.rounds = 1;
   hot.sweep.temperature = D == 2 ? 0.4 : 0.6;
-  for (int i = 0; i < (D == 2 ? 40 : D == 4 ? 3 : 2); ++i) {
+  for (int i = 0; i < (D == 2 ? 60 : D == 4 ? 3 : 2); ++i) {
     all.push_back(hot);
-    hot.sweep.temperature *= D == 2 ? 0.975 : 0.7;
+    hot.sweep.temperature *= D == 2 ? 0.98 : 0.7;
   }
   all.push_back(average);
 
@@ -108,7 +109,29 @@ class Adaption {
       sort_in_space(work_);
       sorted_at_ = work_.node_count();
     }
-    const Partition<D> partition(work_, report_.sweeps++, params_.threads);
+    return run(Partition<D>(work_, report_.sweeps++, params_.threads), sweep, 1, progress);
+  }
+
+  /// As many sweeps over the surroundings of poor elements, where they are a small part of the
+  /// mesh: what is good already costs one look. Nothing when they are more than that.
+  std::optional<std::size_t> mend(const SweepParams& sweep, int sweeps, const Progress& progress) {
+    std::vector<std::int32_t> patch = around_poor(sweep.attention);
+    const auto count = static_cast<std::size_t>(std::count(patch.begin(), patch.end(), 1));
+    if (count > patch.size() / 8) return std::nullopt;
+    report_.sweeps += sweeps;
+    if (count == 0) return 0;
+    // The rest goes through in pieces, which free their memory one by one.
+    constexpr std::size_t piece = 200'000;
+    for (std::size_t e = 0; e < patch.size(); ++e)
+      patch[e] = patch[e] ? 0 : 1 + static_cast<std::int32_t>(e / piece);
+    const auto blocks = static_cast<int>(2 + (patch.size() - 1) / piece);
+    return run(Partition<D>(work_, patch, blocks), sweep, sweeps, progress, 1);
+  }
+
+  /// Each of the blocks, or of the first `active` ones, as many times, or until nothing is left to
+  /// do. Returns the number of operations of the last sweeps.
+  std::size_t run(const Partition<D>& partition, const SweepParams& sweep, int sweeps,
+                  const Progress& progress, int active = std::numeric_limits<int>::max()) {
     std::vector<Block<D>> blocks(partition.count());
     std::vector<AdaptReport> counts(blocks.size());
     std::atomic<std::size_t> operations = 0, finished = 0;
@@ -116,13 +139,19 @@ class Adaption {
         blocks.size(), params_.threads, {},
         [&](std::size_t i) {
           blocks[i] = partition.extract(work_, static_cast<int>(i));
-          if (!partition.pending(static_cast<int>(i)) || progress.cancelled()) return;
+          const int b = static_cast<int>(i);
+          if (b >= active || !partition.pending(b) || progress.cancelled()) return;
           SweepParams local = sweep;
           const auto size = static_cast<double>(blocks[i].mesh.elements.size());
           const double share = most_elements_ * size / static_cast<double>(work_.elements.size());
           if (share < 1e15) local.most_elements = static_cast<std::size_t>(share);
           StarOptimizer<D> star(std::move(blocks[i]), model_, params_, metric_at_, scale_);
-          operations += star.sweep(local, progress);
+          std::size_t done = 0;
+          for (int s = 0; s < sweeps; ++s) {
+            done = star.sweep(local, progress);
+            if (done == 0) break;
+          }
+          operations += done;
           if (star.overfull()) overfull_ = true;
           counts[i] = star.counts();
           blocks[i] = star.take();
@@ -188,6 +217,49 @@ class Adaption {
   }
 
  private:
+  /// [element] 1 for those that touch a neighbor of a node of an element below the quality.
+  std::vector<std::int32_t> around_poor(double quality) const {
+    RatingKernel<D> kernel;
+    kernel.element_mean = params_.element_mean;
+    kernel.size_average = params_.size_average;
+    kernel.points = &work_.points;
+    const MetricCarrier<D> carrier(params_.element_mean);
+    std::vector<Packed<D>> own;
+    if (params_.element_mean != MetricMean::m) {
+      own.resize(work_.metric.size());
+      for (std::size_t n = 1; n < own.size(); ++n) own[n] = carrier.carry(work_.metric[n]);
+    }
+    const auto& carried = own.empty() ? work_.metric : own;
+    std::vector<Rating> ratings(work_.elements.size());
+    constexpr std::size_t chunk = 4096;
+    parallel_each(
+        (ratings.size() + chunk - 1) / chunk, params_.threads, {},
+        [&](std::size_t c) {
+          const std::size_t first = c * chunk, last = std::min(ratings.size(), first + chunk);
+          FaceBatch<D>().rate_elements({work_.elements, work_.points, carried}, first, last, kernel,
+                                       std::span(ratings).subspan(first, last - first));
+        },
+        1);
+    // Ring by ring: an element joins when one of its nodes has.
+    std::vector<std::int32_t> ring(work_.points.size(), 0), in(work_.elements.size(), 0);
+    const auto mark = [&](std::size_t e, std::int32_t with) {
+      for (NodeId n : work_.elements[e])
+        if (n != 0 && ring[n] == 0) ring[n] = with;
+    };
+    for (std::size_t e = 0; e < in.size(); ++e)
+      if (ratings[e].quality < quality) mark(e, 1);
+    for (std::int32_t r = 1; r <= 2; ++r)
+      for (std::size_t e = 0; e < in.size(); ++e) {
+        const auto& nodes = work_.elements[e];
+        if (std::none_of(nodes.begin(), nodes.end(),
+                         [&](NodeId n) { return n != 0 && ring[n] != 0 && ring[n] <= r; }))
+          continue;
+        if (r == 1) mark(e, 2);
+        if (r == 2) in[e] = 1;
+      }
+    return in;
+  }
+
   const BoundaryModel<D>& model_;
   const AdaptParams& params_;
   const MetricFunction<D>& metric_at_;
@@ -238,17 +310,7 @@ Result<void> check_input(const SimplexMesh<D>& mesh, const MetricField<D>& metri
     return Error{Code::bad_input, "The mesh to adapt has no elements or no boundary facets.",
                  "Read it again with its boundary, or generate a first mesh."};
   if (function) return {};
-  if (metric.size() != mesh.points.size())
-    return Error{Code::bad_input,
-                 "The metric has " + std::to_string(metric.empty() ? 0 : metric.size() - 1) +
-                     " values for " + std::to_string(mesh.node_count()) + " nodes.",
-                 "Give one metric a node, in the order of the nodes."};
-  for (std::size_t n = 1; n < metric.size(); ++n)
-    if (!(metric[n].determinant() > 0) || !metric[n].allFinite())
-      return Error{Code::bad_input,
-                   "The metric of node " + std::to_string(n) + " is not positive definite.",
-                   "Sizes must be positive and finite in every direction."};
-  return {};
+  return check_metric<D>(metric, mesh.node_count());
 }
 
 }  // namespace
@@ -285,18 +347,29 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
     for (int i = 0; i < stage.rounds && !progress.cancelled(); ++i) {
       const double begin = static_cast<double>(past + i) / rounds;
       const std::size_t moves = report.moves;
+      if (stage.sweep.attention < 1) {
+        const int left = stage.rounds - i;
+        const auto mended = adaption.mend(
+            stage.sweep, left, progress.portion(begin, begin + 1.0 * left / rounds, "adapting"));
+        if (mended) {
+          report.settled = *mended == 0;
+          break;
+        }
+      }
       std::size_t done =
           adaption.round(stage.sweep, progress.portion(begin, begin + 1.0 / rounds, "adapting"));
       if (!stage.count_moves) done -= report.moves - moves;
       if (adaption.overfull())
         return over_budget<D>(report, *params.memory_limit, adaption.element_count());
-      if (static_cast<double>(done) < stage.settled * static_cast<double>(adaption.node_count()))
-        break;
+      report.settled =
+          static_cast<double>(done) < stage.settled * static_cast<double>(adaption.node_count());
+      if (report.settled) break;
     }
     past += stage.rounds;
   }
   if (params.treat_blocking && !progress.cancelled()) adaption.open_blocking(progress);
   report.cancelled = progress.cancelled();
+  if (report.cancelled) report.settled = false;
   progress.report(1);
   Adapted<D> out = adaption.result(mesh);
   if (params.treat_blocking) out.report.blocking = blocking_faces(out.mesh).size();

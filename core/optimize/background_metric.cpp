@@ -35,18 +35,7 @@ Result<MetricFunction<D>> background_metric(const SimplexMesh<D>& mesh,
   if (mesh.elements.empty())
     return Error{Code::bad_input, "The background mesh has no elements.",
                  "Give the mesh that the metric was made on."};
-  if (metric.size() != mesh.points.size())
-    return Error{Code::bad_input,
-                 "The background metric has " +
-                     std::to_string(metric.empty() ? 0 : metric.size() - 1) + " values for " +
-                     std::to_string(mesh.node_count()) + " nodes.",
-                 "Give one metric a node, in the order of the nodes."};
-  for (std::size_t n = 1; n < metric.size(); ++n)
-    if (!is_spd<D>(metric[n]))
-      return Error{
-          Code::bad_input,
-          "The background metric of node " + std::to_string(n) + " is not positive definite.",
-          "Sizes must be positive and finite in every direction."};
+  if (Result<void> good = check_metric<D>(metric, mesh.node_count()); !good) return good.error();
 
   const MetricCarrier<D> carrier(mean);
   std::vector<Packed<D>> carried(metric.size(), Packed<D>::zero());

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
+#include <span>
 
 #include "core/optimize/adapt.h"
 #include "core/optimize/packed.h"
@@ -41,6 +43,14 @@ struct Rating {
   double energy = std::numeric_limits<double>::infinity();
 };
 
+/// Whether the qualities `a` go before `b` in the order (3.9): both sorted from the worst, the
+/// first difference decides, and the shorter list is padded with +infinity.
+inline bool goes_before(std::span<const double> a, std::span<const double> b) {
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    if (a[i] != b[i]) return a[i] > b[i];
+  return a.size() < b.size();
+}
+
 /// h^D, given h^2.
 template <int D>
 double power_of_size(double h2) {
@@ -53,7 +63,7 @@ double power_of_size(double h2) {
 template <int D>
 inline constexpr double typical_energy = D == 2   ? 1.02
                                          : D == 3 ? 1.2
-                                                  : 1.4;
+                                                  : 1.38;
 /// Weight w of the size in the energy.
 template <int D>
 inline constexpr double size_weight = D == 2   ? 1.8

@@ -51,6 +51,15 @@ LAMELLA_INLINE Quad determinant(const Quad* m) {
   }
 }
 
+/// The same number in all lanes.
+template <int N>
+struct Spread {
+  Quad lanes[N];
+  LAMELLA_INLINE explicit Spread(const double* values) {
+    for (int k = 0; k < N; ++k) lanes[k] = Quad{} + values[k];
+  }
+};
+
 /// What depends on the apex in four elements: h^2, D! times the measure, and the factor that makes
 /// it the measure in the metric over that of the unit simplex.
 template <int D>
@@ -59,8 +68,7 @@ struct Shapes {
 };
 
 template <int D>
-LAMELLA_INLINE void shapes(const Group<D>& g, const double* apex, const double* carried,
-                           Shapes<D>& s) {
+LAMELLA_INLINE void shapes(const Group<D>& g, const Quad* apex, const Quad* carried, Shapes<D>& s) {
   constexpr double mean = 1.0 / (D + 1);
   for (int k = 0; k < D; ++k) s.w[k] = apex[k] - load(g.center[k]);
   for (int k = 0; k < Packed<D>::size; ++k) s.metric[k] = mean * (load(g.metric[k]) + carried[k]);
@@ -82,7 +90,7 @@ LAMELLA_INLINE Quad power(Quad h2) {
 }
 
 template <int D>
-LAMELLA_INLINE void rate_group(const Group<D>& g, const double* apex, const double* carried,
+LAMELLA_INLINE void rate_group(const Group<D>& g, const Quad* apex, const Quad* carried,
                                double relaxation, double weight, double* quality, double* energy) {
   Shapes<D> s;
   shapes<D>(g, apex, carried, s);
@@ -99,7 +107,7 @@ LAMELLA_INLINE void rate_group(const Group<D>& g, const double* apex, const doub
 }
 
 template <int D>
-LAMELLA_INLINE bool derive_group(const Group<D>& g, const double* apex, const double* carried,
+LAMELLA_INLINE bool derive_group(const Group<D>& g, const Quad* apex, const Quad* carried,
                                  double weight, double (*gradient)[width], double (*hessian)[width],
                                  double (*convex)[width]) {
   constexpr double p = 0.5 * D, c = 4.0 / (D + 1);
@@ -162,12 +170,22 @@ LAMELLA_VECTOR void triangles_of(Group<3>& g) { triangles(g); }
   LAMELLA_VECTOR void rate_lanes(const Group<D>& g, const double* apex, const double* carried,   \
                                  double relaxation, double weight, double* quality,              \
                                  double* energy) {                                               \
-    rate_group<D>(g, apex, carried, relaxation, weight, quality, energy);                        \
+    rate_group<D>(g, Spread<D>(apex).lanes, Spread<Packed<D>::size>(carried).lanes, relaxation,  \
+                  weight, quality, energy);                                                      \
+  }                                                                                              \
+  LAMELLA_VECTOR void rate_four(const Group<D>& g, const double(*apex)[width],                   \
+                                const double(*carried)[width], double relaxation, double weight, \
+                                double* quality, double* energy) {                               \
+    Quad x[D], m[Packed<D>::size];                                                               \
+    for (int k = 0; k < D; ++k) x[k] = load(apex[k]);                                            \
+    for (int k = 0; k < Packed<D>::size; ++k) m[k] = load(carried[k]);                           \
+    rate_group<D>(g, x, m, relaxation, weight, quality, energy);                                 \
   }                                                                                              \
   LAMELLA_VECTOR bool derive_lanes(const Group<D>& g, const double* apex, const double* carried, \
                                    double weight, double(*gradient)[width],                      \
                                    double(*hessian)[width], double(*convex)[width]) {            \
-    return derive_group<D>(g, apex, carried, weight, gradient, hessian, convex);                 \
+    return derive_group<D>(g, Spread<D>(apex).lanes, Spread<Packed<D>::size>(carried).lanes,     \
+                           weight, gradient, hessian, convex);                                   \
   }
 LAMELLA_DIMENSION(2)
 LAMELLA_DIMENSION(3)
@@ -177,20 +195,19 @@ LAMELLA_DIMENSION(4)
 }  // namespace
 
 template <int D>
-void FaceBatch<D>::add(const Topology<D>& topo, std::int32_t element, int place,
-                       const std::vector<Packed<D>>& carried) {
+void FaceBatch<D>::add(const Nodes& nodes, std::int32_t element, int place) {
   const int i = size(), lane = i % width, group = i / width;
   if (static_cast<std::size_t>(group) >= groups_.size()) groups_.resize(group + 1);
   CavityFace<D>& f = faces_.emplace_back();
   f.element = element;
   f.place = place;
-  f.nodes = opposite_facet<D>(topo.elements[element], place);
+  f.nodes = opposite_facet<D>(nodes.elements[element], place);
   Group& g = groups_[group];
   const Packed<D>* m[D];
   for (int k = 0; k < D; ++k) {
-    const Vec<D>& x = topo.points[f.nodes[k]];
+    const Vec<D>& x = nodes.points[f.nodes[k]];
     for (int d = 0; d < D; ++d) g.points[k][d][lane] = x[d];
-    m[k] = &carried[f.nodes[k]];
+    m[k] = &nodes.carried[f.nodes[k]];
   }
   for (int j = 0; j < packed; ++j) {
     double sum = m[0]->c[j];
@@ -272,6 +289,48 @@ void FaceBatch<D>::rate(int group, const RatingKernel<D>& kernel, const Vec<D>& 
   derive(group);
   rate_lanes(groups_[group], apex.data(), apex_carried.c.data(), kernel.relaxation, size_weight<D>,
              rates.quality, rates.energy);
+}
+
+template <int D>
+void FaceBatch<D>::rate_elements(const Nodes& nodes, std::size_t first, std::size_t last,
+                                 const RatingKernel<D>& kernel, std::span<Rating> ratings) {
+  clear();
+  alignas(32) Lanes apex[D], metric[packed];
+  Rates rates;
+  const auto finish = [&] {
+    const int lanes = size();
+    if (lanes == 0) return;
+    if (kernel.plain()) {
+      for (int l = lanes; l < width; ++l) {
+        for (int d = 0; d < D; ++d) apex[d][l] = apex[d][0];
+        for (int k = 0; k < packed; ++k) metric[k][l] = metric[k][0];
+      }
+      derive(0);
+      rate_four(groups_[0], apex, metric, kernel.relaxation, size_weight<D>, rates.quality,
+                rates.energy);
+    }
+    for (int l = 0; l < lanes; ++l) {
+      const std::int32_t e = faces_[l].element;
+      const NodeId n = nodes.elements[e][0];
+      ratings[e - first] = kernel.plain() ? Rating{rates.quality[l], rates.energy[l]}
+                                          : rate_one(l, kernel, nodes.points[n], nodes.carried[n]);
+    }
+    clear();
+  };
+  for (std::size_t e = first; e < last; ++e) {
+    const auto& element = nodes.elements[e];
+    if (element[1] == 0) continue;
+    if (element[0] == 0) {
+      ratings[e - first] = {std::numeric_limits<double>::infinity(), 0};
+      continue;
+    }
+    const int lane = size();
+    add(nodes, static_cast<std::int32_t>(e), 0);
+    for (int d = 0; d < D; ++d) apex[d][lane] = nodes.points[element[0]][d];
+    for (int k = 0; k < packed; ++k) metric[k][lane] = nodes.carried[element[0]].c[k];
+    if (size() == width) finish();
+  }
+  finish();
 }
 
 template <int D>

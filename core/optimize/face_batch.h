@@ -20,6 +20,12 @@ class FaceBatch {
     Lanes metric[packed];
     Lanes normal[D], center[D], normal2, edges[packed];
   };
+  /// What elements are made of.
+  struct Nodes {
+    const std::vector<std::array<NodeId, D + 1>>& elements;
+    const std::vector<Vec<D>>& points;
+    const std::vector<Packed<D>>& carried;  ///< what elements average of the metric
+  };
   struct alignas(32) Rates {
     Lanes quality, energy;
   };
@@ -35,8 +41,7 @@ class FaceBatch {
     faces_.clear();
     derived_ = 0;
   }
-  void add(const Topology<D>& topo, std::int32_t element, int place,
-           const std::vector<Packed<D>>& carried);
+  void add(const Nodes& nodes, std::int32_t element, int place);
   int size() const { return static_cast<int>(faces_.size()); }
   int groups() const { return (size() + width - 1) / width; }
   const CavityFace<D>& operator[](int i) const { return faces_[i]; }
@@ -48,6 +53,10 @@ class FaceBatch {
             const Packed<D>& apex_carried, Rates& rates);
   Rating rate_one(int i, const RatingKernel<D>& kernel, const Vec<D>& apex,
                   const Packed<D>& apex_carried);
+  /// Ratings of the elements [first, last) into `ratings`, of the same length; virtual ones have
+  /// infinite quality and no energy, dead ones are passed over. Clears the batch.
+  void rate_elements(const Nodes& nodes, std::size_t first, std::size_t last,
+                     const RatingKernel<D>& kernel, std::span<Rating> ratings);
   /// Of the energy in the position of an apex whose metric is held.
   Derivatives derivatives(const RatingKernel<D>& kernel, const Vec<D>& apex,
                           const Packed<D>& apex_carried);

@@ -512,16 +512,7 @@ Result<Conditioned<D>> condition_metric(const SimplexMesh<D>& mesh, const Metric
   if (auto error = checked(params)) return *error;
   if (mesh.elements.empty())
     return Error{Code::bad_input, "The mesh of the metric has no elements.", ""};
-  if (metric.size() != mesh.points.size())
-    return Error{Code::bad_input,
-                 "The metric has " + std::to_string(metric.empty() ? 0 : metric.size() - 1) +
-                     " values for " + std::to_string(mesh.node_count()) + " nodes.",
-                 "Give one metric a node, in the order of the nodes."};
-  for (std::size_t n = 1; n < metric.size(); ++n)
-    if (!is_spd<D>(metric[n]))
-      return Error{Code::bad_input,
-                   "The metric of node " + std::to_string(n) + " is not positive definite.",
-                   "Sizes must be positive and finite in every direction."};
+  if (Result<void> good = check_metric<D>(metric, mesh.node_count()); !good) return good.error();
   return Conditioner<D>(mesh, metric, params).run(progress);
 }
 

@@ -6,6 +6,8 @@
 namespace lamella {
 namespace {
 
+constexpr double fourth_power(double x) { return x * x * x * x; }
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Squared metric distance within which a moved node keeps the metric carried to it instead of
 /// asking the function again.
@@ -64,18 +66,8 @@ template <int D>
 void StarOptimizer<D>::set_relaxation(double beta) {
   if (kernel_.relaxation == beta) return;
   kernel_.relaxation = beta;
-  for (std::size_t e = 0; e < topo_.elements.size(); ++e)
-    if (topo_.alive(static_cast<std::int32_t>(e)))
-      rating_[e] = rating_of(static_cast<std::int32_t>(e));
-}
-
-template <int D>
-Rating StarOptimizer<D>::rating_of(std::int32_t e) const {
-  if (topo_.is_virtual(e)) return {infinity, 0};
-  RealFace<D> f;
-  fill_real_face(f, topo_, e, 0, averaged());
-  const NodeId apex = topo_.elements[e][0];
-  return kernel_(f, topo_.points[apex], averaged()[apex]);
+  faces_.rate_elements({topo_.elements, topo_.points, averaged()}, 0, topo_.elements.size(),
+                       kernel_, rating_);
 }
 
 template <int D>
@@ -104,11 +96,23 @@ std::size_t StarOptimizer<D>::sweep(const SweepParams& params, const Progress& p
       overfull_ = true;
       return operations;
     }
-    if (movable(s) && process_node(s)) ++operations;
-    if (params.moves_only) continue;
-    if (!topo_.around.empty(s)) operations += improve_edges(s, before);
+    const bool linked = movable(s);
+    if (linked && process_node(s)) ++operations;
+    if (params.moves_only || topo_.around.empty(s)) continue;
+    if (!linked || edges_matter(s)) operations += improve_edges(s, before);
   }
   return operations;
+}
+
+/// Whether an element of the star of s is poor, or an edge to a node of link_, the link of s, long.
+template <int D>
+bool StarOptimizer<D>::edges_matter(NodeId s) const {
+  for (auto e : topo_.around.of(s))
+    if (rating_[e].quality <= sweep_.good_enough) return true;
+  const double split4 = fourth_power(sweep_.split_above);
+  for (NodeId n : link_)
+    if (n > s && length4(s, n) > split4) return true;
+  return false;
 }
 
 /// Edges are owned by their lower node; an edge whose cavity is older than the owner's last turn
@@ -117,16 +121,16 @@ template <int D>
 std::size_t StarOptimizer<D>::improve_edges(NodeId s, std::uint32_t before) {
   list_edges(s, before, 0);
   std::size_t operations = 0;
-  const double split2 = sweep_.split_above * sweep_.split_above;
+  const double split4 = fourth_power(sweep_.split_above);
   for (std::size_t i = 0; i < owned_.size(); ++i) {
     if (!owned_[i].fresh) continue;
     const NodeId n = owned_[i].node;
-    const double l2 = length2(s, n);
-    if (l2 <= split2 && owned_[i].worst > sweep_.good_enough) continue;
+    const double l4 = length4(s, n);
+    if (l4 <= split4 && owned_[i].worst > sweep_.good_enough) continue;
     star_.clear();
     for (auto e : topo_.around.of(s))
       if (Topology<D>::has(topo_.elements[e], n)) star_.push_back(e);
-    const bool is_long = l2 > split2 && longest(s, n, l2 / (nearly_longest * nearly_longest));
+    const bool is_long = l4 > split4 && longest(s, n, l4 / fourth_power(nearly_longest));
     if (!is_long && owned_[i].worst > sweep_.good_enough) continue;
     if (!process_edge(s, n, is_long)) continue;
     ++operations;
@@ -169,13 +173,13 @@ void StarOptimizer<D>::list_edges(NodeId s, std::uint32_t before, std::size_t fi
   }
 }
 
-/// Whether no edge from either end to a node around the edge has a squared length above `limit2`:
-/// the longest edges are split first.
+/// Whether no edge from either end to a node around the edge has a length above limit4^(1/4): the
+/// longest edges are split first.
 template <int D>
-bool StarOptimizer<D>::longest(NodeId s, NodeId n, double limit2) const {
+bool StarOptimizer<D>::longest(NodeId s, NodeId n, double limit4) const {
   for (auto e : star_)
     for (NodeId v : topo_.elements[e])
-      if (v != 0 && v != s && v != n && (length2(s, v) > limit2 || length2(n, v) > limit2))
+      if (v != 0 && v != s && v != n && (length4(s, v) > limit4 || length4(n, v) > limit4))
         return false;
   return true;
 }
@@ -200,7 +204,7 @@ void StarOptimizer<D>::open_cavity(std::span<const std::int32_t> elements, NodeI
           f.place = k;
           virtual_faces_.push_back(f);
         } else {
-          faces_.add(topo_, e, k, averaged());
+          faces_.add({topo_.elements, topo_.points, averaged()}, e, k);
         }
       } else if (n != 0 && mark_[n] != mark_value_) {
         mark_[n] = mark_value_;
@@ -213,6 +217,7 @@ void StarOptimizer<D>::open_cavity(std::span<const std::int32_t> elements, NodeI
 template <int D>
 void StarOptimizer<D>::start_from_current() {
   best_.clear();
+  best_sorted_ = false;
   best_worst_ = infinity;
   best_cost_ = 0;
   for (auto e : cavity_)
@@ -234,6 +239,7 @@ void StarOptimizer<D>::start_from_current() {
 template <int D>
 bool StarOptimizer<D>::beats(const Apex& apex) {
   trial_.clear();
+  trial_sorted_ = false;
   trial_worst_ = infinity;
   trial_cost_ = 0;
   typename FaceBatch<D>::Rates rates;
@@ -267,15 +273,11 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
     return trial_cost_ < best_cost_ - least_gain;
   }
   if (trial_worst_ != best_worst_) return true;
-  // Same worst element: compare the sorted lists, the shorter one padded with +infinity.
   std::sort(trial_.begin(), trial_.end());
-  std::sort(best_.begin(), best_.end());
-  for (std::size_t i = 0; i < std::max(trial_.size(), best_.size()); ++i) {
-    const double t = i < trial_.size() ? trial_[i] : infinity;
-    const double b = i < best_.size() ? best_[i] : infinity;
-    if (t != b) return t > b;
-  }
-  return false;
+  trial_sorted_ = true;
+  if (!best_sorted_) std::sort(best_.begin(), best_.end());
+  best_sorted_ = true;
+  return goes_before(trial_, best_);
 }
 
 template <int D>
@@ -286,6 +288,7 @@ void StarOptimizer<D>::offer(const Apex& apex, const BoundarySite& site) {
     best_retag_ = retag_;
   }
   std::swap(best_, trial_);
+  best_sorted_ = trial_sorted_;
   best_worst_ = trial_worst_;
   best_cost_ = trial_cost_;
   best_apex_ = apex;
@@ -344,11 +347,11 @@ bool StarOptimizer<D>::process_node(NodeId s) {
   if (!node_site(s, site)) return false;
   start_from_current();
 
-  const double near2 = sweep_.collapse_below * sweep_.collapse_below;
+  const double near4 = fourth_power(sweep_.collapse_below);
   const bool any = cavity_worst_ < poor_quality;
   const auto join = [&](NodeId v) {
     if (sweep_.moves_only) return;
-    if (any || length2(s, v) < near2) offer(existing(v), site);
+    if (any || length4(s, v) < near4) offer(existing(v), site);
   };
   if (!site.boundary) {
     for (NodeId v : link_) join(v);
@@ -467,8 +470,8 @@ void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
     }
     far = apex.metric.quad(apex.point - topo_.points[v]) > far_move2;
     topo_.points[v] = apex.point;
+    if (moved == 0 || apex.metric.c != metric_[v].c) carried_known_[v] = 0;
     metric_[v] = apex.metric;
-    carried_known_[v] = 0;
     if (!plain_) own_averaged_[v] = apex.averaged;
   }
   if (moved != 0) {

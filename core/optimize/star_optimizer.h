@@ -92,13 +92,13 @@ class StarOptimizer {
   void replace_cavity(const Apex& apex, NodeId moved);
   const Packed<D>& carried(NodeId n) const;
   Packed<D> metric_in_star(NodeId s, const Vec<D>& x);
-  /// Squared length of an edge in the metric, the geometric mean of what its ends say.
-  double length2(NodeId a, NodeId b) const {
+  /// Fourth power of the length of an edge in the metric, the geometric mean of what its ends say.
+  double length4(NodeId a, NodeId b) const {
     const Vec<D> e = topo_.points[b] - topo_.points[a];
-    return std::sqrt(metric_[a].quad(e) * metric_[b].quad(e));
+    return metric_[a].quad(e) * metric_[b].quad(e);
   }
-  bool longest(NodeId s, NodeId n, double limit2) const;
-  Rating rating_of(std::int32_t e) const;
+  bool longest(NodeId s, NodeId n, double limit4) const;
+  bool edges_matter(NodeId s) const;
   void rate_all(const Apex& apex);
   void grow_nodes();
   void release_if_unused(NodeId n);
@@ -150,6 +150,7 @@ class StarOptimizer {
   std::vector<std::uint32_t> mark_;
   std::uint32_t mark_value_ = 0;
   std::vector<double> best_, trial_;
+  bool best_sorted_ = false, trial_sorted_ = false;
   double best_worst_ = 0, trial_worst_ = 0;  ///< quality
   double best_cost_ = 0, trial_cost_ = 0;    ///< energy above that of a typical element
   double cavity_worst_ = 0;

@@ -85,7 +85,7 @@ void StarOptimizer<D>::open_pair(std::int32_t e, std::int32_t other, const Facet
   for (std::int32_t i : cavity_)
     for (int k = 0; k <= D; ++k)
       if (std::find(face.begin(), face.end(), topo_.elements[i][k]) != face.end())
-        faces_.add(topo_, i, k, averaged());
+        faces_.add({topo_.elements, topo_.points, averaged()}, i, k);
 }
 
 #define LAMELLA_INSTANTIATE(D) \

@@ -113,12 +113,22 @@ Partition<D>::Partition(const WorkMesh<D>& mesh, int round, int threads) {
   }
   // An element belongs to the last of its nodes' blocks.
   std::vector<std::int32_t> home(mesh.elements.size(), 0);
-  first_.assign(count + 1, 0);
-  for (std::size_t e = 0; e < home.size(); ++e) {
+  for (std::size_t e = 0; e < home.size(); ++e)
     for (NodeId n : mesh.elements[e])
       if (n != 0) home[e] = std::max(home[e], node_block_[n]);
-    ++first_[home[e] + 1];
-  }
+  fill(mesh, home, static_cast<int>(count));
+}
+
+template <int D>
+Partition<D>::Partition(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count) {
+  node_block_.resize(mesh.points.size());
+  fill(mesh, home, count);
+}
+
+template <int D>
+void Partition<D>::fill(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count) {
+  first_.assign(count + 1, 0);
+  for (std::int32_t b : home) ++first_[b + 1];
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   order_.resize(home.size());
   std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);

@@ -39,12 +39,16 @@ template <int D>
 class Partition {
  public:
   Partition(const WorkMesh<D>& mesh, int round, int threads);
+  /// By hand: [element] its block, of `count` blocks.
+  Partition(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count);
   int count() const { return static_cast<int>(first_.size()) - 1; }
   /// Whether the block has dirty nodes.
   bool pending(int block) const { return pending_[block] != 0; }
   Block<D> extract(const WorkMesh<D>& mesh, int block) const;
 
  private:
+  void fill(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count);
+
   std::vector<std::int32_t> order_;       // elements, by block
   std::vector<std::int32_t> first_;       // [block] into order_
   std::vector<std::int32_t> node_block_;  // [node] -1 where blocks meet

@@ -290,7 +290,7 @@ Result<void> regenerate(const fs::path& docs) {
     jobs.emplace_back(&h.ours, [&h] {
       run<4>(
           h.ours, unit_box<4>(1),
-          [&h](const Vec<4>&) { return isotropic_metric<4>(1.0 / h.divisions); }, 4);
+          [&h](const Vec<4>&) { return isotropic_metric<4>(1.0 / h.divisions); }, 10);
     });
   }
   for (Case& c : cases)

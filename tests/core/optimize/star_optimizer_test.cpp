@@ -1,5 +1,7 @@
 #include "core/optimize/star_optimizer.h"
 
+#include <random>
+
 #include "core/mesh/quality.h"
 #include "tests/support/adapt_cases.h"
 #include "tests/support/work_meshes.h"
@@ -153,6 +155,39 @@ testing::AssertionResult no_worse(const std::vector<double>& a, const std::vecto
            << "element " << i << " fell from " << a[i] << " to " << b[i];
   }
   return testing::AssertionSuccess();
+}
+
+TEST(Order, IsAStrictWeakOrderOfSortedLists) {
+  // Few values and lengths, so that ties and prefixes abound.
+  std::vector<std::vector<double>> lists;
+  std::mt19937 random(5);
+  for (int i = 0; i < 60; ++i) {
+    std::vector<double> list(random() % 4);
+    for (double& q : list) q = 0.25 * static_cast<double>(1 + random() % 3);
+    std::sort(list.begin(), list.end());
+    lists.push_back(std::move(list));
+  }
+  const auto equal = [](const auto& a, const auto& b) {
+    return !goes_before(a, b) && !goes_before(b, a);
+  };
+  for (const auto& a : lists) {
+    EXPECT_FALSE(goes_before(a, a));
+    for (const auto& b : lists) {
+      EXPECT_FALSE(goes_before(a, b) && goes_before(b, a));
+      EXPECT_EQ(equal(a, b), a == b) << "distinct lists are told apart";
+      for (const auto& c : lists) {
+        if (goes_before(a, b) && goes_before(b, c)) EXPECT_TRUE(goes_before(a, c));
+        if (equal(a, b) && equal(b, c)) EXPECT_TRUE(equal(a, c));
+      }
+    }
+  }
+}
+
+TEST(Order, ThePrefixGoesFirstAndTheWorstElementDecides) {
+  const std::vector<double> shorter{0.3, 0.5}, longer{0.3, 0.5, 0.9}, worse{0.2, 0.9, 0.9};
+  EXPECT_TRUE(goes_before(shorter, longer));
+  EXPECT_TRUE(goes_before(longer, worse));
+  EXPECT_FALSE(goes_before(worse, shorter));
 }
 
 TYPED_TEST(StarOptimizers, TheOrderNeverFalls) {
