@@ -56,7 +56,7 @@ void expect_on(const SimplexMesh<D>& mesh, const ReferenceSurface<D>& reference,
   EXPECT_LT(nodes_off<D>(mesh, to_reference), 1e-9);
   EXPECT_LE(facets_off<D>(own, to_reference), tolerance * (1 + 1e-9));
   if constexpr (D == 3) {
-    EXPECT_LE(boundary_distance(mesh, to_reference)->largest, tolerance * (1 + 1e-9));
+    EXPECT_LE(boundary_distance(mesh, reference)->to_surface.distance, 1.5 * tolerance);
   }
 }
 
