@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/geometry/surface.h"
