@@ -6,6 +6,7 @@
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
+#include "core/mesh/interfaces.h"
 #include "core/mesh/quality.h"
 #include "core/metric/analytic.h"
 #include "core/metric/intersect.h"
@@ -220,6 +221,35 @@ void tell_iteration(int i, const CheckReport& check, const AdaptReport& r, Conso
   console.emit(dump(json));
 }
 
+ReferenceSurface<3> walls_of(const SimplexMesh<3>& mesh) {
+  const SimplexMesh<3> whole = with_interfaces(mesh);
+  ReferenceSurface<3> walls;
+  walls.points = whole.points;
+  walls.facets.assign(whole.facets.begin(), whole.facets.end());
+  return walls;
+}
+
+/// How far the boundary and the interfaces moved from those of the mesh given.
+Result<void> tell_boundary(const SimplexMesh<3>& before, const SimplexMesh<3>& after, int threads,
+                           const Progress& progress, Console& console) {
+  const ReferenceSurface<3> from = walls_of(before), to = walls_of(after);
+  Result<FarthestPoint> there = farthest_point(to, from, 0, threads, progress.portion(0, 0.5));
+  if (!there) return there.error();
+  Result<FarthestPoint> back = farthest_point(from, to, 0, threads, progress.portion(0.5, 1));
+  if (!back) return back.error();
+  const auto place = [](const Vec<3>& x) {
+    return "(" + short_number(x[0], 4) + ", " + short_number(x[1], 4) + ", " +
+           short_number(x[2], 4) + ")";
+  };
+  console.say("boundary within " + short_number(there->distance, 3) + " mm of the mesh given, at " +
+              place(there->place) + "; its boundary within " + short_number(back->distance, 3) +
+              " mm of the new one, at " + place(back->place));
+  console.emit(dump({{"phase", "boundary"},
+                     {"boundary_to_given", farthest_json(*there)},
+                     {"given_to_boundary", farthest_json(*back)}}));
+  return {};
+}
+
 template <int D>
 int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& console) {
   const Progress progress = console.progress();
@@ -261,6 +291,14 @@ int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& conso
       break;
     }
     tell_iteration(i, *report, current.report, console);
+  }
+  if constexpr (D == 3) {
+    if (!cancelled) {
+      const Result<void> told =
+          tell_boundary(mesh, current.mesh, params->threads, progress.portion(1, 1), console);
+      if (!told && told.error().code != Code::cancelled) return console.fail(told.error());
+      cancelled = !told.ok();
+    }
   }
   if (Result<void> done =
           write_any<D>(c.output, std::move(current.mesh), std::move(current.metric));

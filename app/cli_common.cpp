@@ -88,6 +88,11 @@ Json report_json(const CheckReport& r, bool with_metric) {
   return json;
 }
 
+Json farthest_json(const FarthestPoint& point) {
+  return {{"distance", point.distance},
+          {"place", {point.place[0], point.place[1], point.place[2]}}};
+}
+
 template Result<MetricField<2>> metric_of(const SimplexMesh<2>&, const std::string&,
                                           const std::string&, MetricFunction<2>*);
 template Result<MetricField<4>> metric_of(const SimplexMesh<4>&, const std::string&,

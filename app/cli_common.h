@@ -6,6 +6,7 @@
 #include "core/io/medit.h"
 #include "core/mesh/check.h"
 #include "core/metric/metric.h"
+#include "core/natural/boundary_distance.h"
 
 namespace lamella::cli {
 
@@ -38,5 +39,8 @@ Result<void> write_any(const std::string& output, SimplexMesh<D>&& mesh, MetricF
 
 /// The findings of a check, without those about the metric where there is none.
 Json report_json(const CheckReport& report, bool with_metric);
+
+/// A distance with the place where it was found.
+Json farthest_json(const FarthestPoint& point);
 
 }  // namespace lamella::cli

@@ -89,10 +89,12 @@ void tell_end(const Outcome& outcome, const Report& report, const std::string& s
     char line[240];
     const double difference = b.cad_volume > 0 ? 100 * (b.mesh_volume / b.cad_volume - 1) : 0;
     std::snprintf(line, sizeof line,
-                  "%s: layers %.2f (5 %%: %.2f) of %d, volume %+.3f %%, boundary within %.3g mm of "
-                  "%.3g mm, first mesh by %s",
+                  "%s: layers %.2f (5 %%: %.2f) of %d, volume %+.3f %%, boundary within %.3g mm, "
+                  "part within %.3g mm of %.3g mm, first mesh by %s",
                   b.name.c_str(), b.layers.mean, b.layers.p5, b.layers_asked, difference,
-                  b.boundary_distance, b.chord_tolerance, b.first_mesh_by.c_str());
+                  b.boundary_distance.to_surface.distance,
+                  b.boundary_distance.from_surface.distance, b.chord_tolerance,
+                  b.first_mesh_by.c_str());
     console.say(line);
     for (const std::string& note : b.notes) console.say("  note: " + note);
   }
@@ -105,7 +107,9 @@ void tell_end(const Outcome& outcome, const Report& report, const std::string& s
                       {"layers_p5", b.layers.p5},
                       {"cad_volume", b.cad_volume},
                       {"mesh_volume", b.mesh_volume},
-                      {"boundary_distance", b.boundary_distance},
+                      {"boundary_distance", b.boundary_distance.largest()},
+                      {"boundary_to_part", farthest_json(b.boundary_distance.to_surface)},
+                      {"part_to_boundary", farthest_json(b.boundary_distance.from_surface)},
                       {"chord_tolerance", b.chord_tolerance},
                       {"first_mesh_by", b.first_mesh_by},
                       {"notes", b.notes}});

@@ -1,22 +1,39 @@
 #pragma once
 
+#include <algorithm>
+
 #include "core/base/progress.h"
 #include "core/base/result.h"
-#include "core/geometry/locator.h"
+#include "core/geometry/surface.h"
 #include "core/mesh/simplex_mesh.h"
 
 namespace lamella {
 
-/// How far the mesh's boundary lies from the surface it stands for.
-struct BoundaryDistance {
-  double largest = 0;             ///< mm
+/// The point of one surface that lies farthest from another.
+struct FarthestPoint {
+  double distance = 0;            ///< mm
   Vec<3> place = Vec<3>::Zero();  ///< where
 };
 
-/// Largest distance to the surface of 16 points of each boundary facet: its center and a lattice
-/// that divides its edges by four. Does not depend on the number of threads (0: all cores). Errors:
-/// bad_input (empty surface), cancelled.
-Result<BoundaryDistance> boundary_distance(const SimplexMesh<3>& mesh, const Locator<3>& surface,
-                                           int threads = 0, const Progress& progress = {});
+/// How far the mesh's boundary and the surface it stands for lie apart.
+struct BoundaryDistance {
+  FarthestPoint to_surface;    ///< of the mesh's boundary, from the surface
+  FarthestPoint from_surface;  ///< of the surface, from the mesh's boundary
+  double largest() const { return std::max(to_surface.distance, from_surface.distance); }
+};
+
+/// Farthest point of `from` from `to` (the one-sided Hausdorff distance). The distance is that of
+/// the place told, and no point of `from` lies farther by more than `resolution` mm (0: 1e-5 of the
+/// diagonal). Does not depend on the number of threads (0: all cores). Errors: bad_input (empty
+/// surface), cancelled.
+Result<FarthestPoint> farthest_point(const ReferenceSurface<3>& from, const ReferenceSurface<3>& to,
+                                     double resolution = 0, int threads = 0,
+                                     const Progress& progress = {});
+
+/// Both directions, between the facets of the mesh and the surface. Errors: those of
+/// `farthest_point`.
+Result<BoundaryDistance> boundary_distance(const SimplexMesh<3>& mesh,
+                                           const ReferenceSurface<3>& surface, int threads = 0,
+                                           const Progress& progress = {});
 
 }  // namespace lamella

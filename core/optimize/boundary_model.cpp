@@ -5,6 +5,8 @@
 #include <map>
 #include <numeric>
 
+#include "core/base/parallel.h"
+
 namespace lamella {
 namespace {
 
@@ -120,6 +122,42 @@ ReferenceSurface<D> surface_of(const SimplexMesh<D>& mesh, double angle) {
   return s;
 }
 
+/// The outer surface with the facets of `own` from number `outer` on and the feature edges between
+/// them: their faces are numbered behind its faces, in `patch` too.
+template <int D>
+ReferenceSurface<D> joined(ReferenceSurface<D> surface, const ReferenceSurface<D>& own,
+                           std::size_t outer, std::vector<std::int32_t>& patch) {
+  std::int32_t base = 0;
+  for (std::int32_t f : surface.facet_face) base = std::max(base, f + 1);
+  for (std::size_t f = 0; f < outer; ++f) base = std::max(base, patch[f] + 1);
+  const auto shift = static_cast<std::int32_t>(surface.points.size());
+  surface.points.insert(surface.points.end(), own.points.begin(), own.points.end());
+  std::vector<char> on_wall(own.points.size(), 0);
+  for (std::size_t f = 0; f < outer; ++f)
+    for (auto v : own.facets[f]) on_wall[v] = 1;
+  for (std::size_t f = outer; f < own.facets.size(); ++f) {
+    auto facet = own.facets[f];
+    for (auto& v : facet) v += shift;
+    surface.facets.push_back(facet);
+    patch[f] += base;
+    surface.facet_face.push_back(patch[f]);
+  }
+  // On the wall the surface knows the features, and the interfaces end at borders of groups.
+  const auto ridges = ridges_of<D>(own.facets);
+  for (const auto& e : own.feature_edges) {
+    Ridge<D> r;
+    std::copy_n(e.begin(), D - 1, r.nodes.begin());
+    std::sort(r.nodes.begin(), r.nodes.end());
+    r.facet = -1;
+    const auto first = std::lower_bound(ridges.begin(), ridges.end(), r);
+    if (first != ridges.end() && static_cast<std::size_t>(first->facet) >= outer)
+      surface.feature_edges.push_back({e[0] + shift, e[1] + shift});
+  }
+  for (auto c : own.corners)
+    if (!on_wall[c]) surface.corners.push_back(c + shift);
+  return surface;
+}
+
 }  // namespace
 
 /// Bounding volume tree over segments.
@@ -184,6 +222,54 @@ struct BoundaryModel<D>::Features {
   }
 };
 
+/// Balanced tree over points, for boxes: the middle of each range divides it.
+template <int D>
+struct BoundaryModel<D>::Vertices {
+  std::vector<Vec<D>> points;
+  std::vector<std::uint8_t> axes;  // [point] across which its range is divided
+
+  explicit Vertices(std::vector<Vec<D>> p) : points(std::move(p)), axes(points.size(), 0) {
+    build(0, points.size());
+  }
+  void build(std::size_t first, std::size_t last) {
+    if (last - first < 2) return;
+    Vec<D> lo = points[first], hi = lo;
+    for (std::size_t i = first; i < last; ++i) {
+      lo = lo.cwiseMin(points[i]);
+      hi = hi.cwiseMax(points[i]);
+    }
+    int axis;
+    (hi - lo).maxCoeff(&axis);
+    const std::size_t middle = first + (last - first) / 2;
+    const auto at = [this](std::size_t i) {
+      return points.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    std::nth_element(at(first), at(middle), at(last), [axis](const Vec<D>& a, const Vec<D>& b) {
+      return a[axis] != b[axis] ? a[axis] < b[axis] : lexicographic<D>(a, b);
+    });
+    axes[middle] = static_cast<std::uint8_t>(axis);
+    build(first, middle);
+    build(middle + 1, last);
+  }
+  void in_box(std::size_t first, std::size_t last, const Vec<D>& lo, const Vec<D>& hi,
+              std::vector<Vec<D>>& found) const {
+    while (first < last) {
+      const std::size_t middle = first + (last - first) / 2;
+      const Vec<D>& p = points[middle];
+      const int axis = axes[middle];
+      if ((p - lo).minCoeff() >= 0 && (hi - p).minCoeff() >= 0) found.push_back(p);
+      if (p[axis] > hi[axis]) {
+        last = middle;
+      } else if (p[axis] < lo[axis]) {
+        first = middle + 1;
+      } else {
+        in_box(first, middle, lo, hi, found);
+        first = middle + 1;
+      }
+    }
+  }
+};
+
 template <int D>
 BoundaryModel<D>::~BoundaryModel() = default;
 
@@ -191,18 +277,32 @@ template <int D>
 BoundaryModel<D>::BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurface<D>* surface,
                                 double tolerance, double feature_angle,
                                 const std::vector<std::int32_t>& frozen_groups,
-                                const std::vector<std::int32_t>& frozen_bodies)
+                                const std::vector<std::int32_t>& frozen_bodies, std::size_t outer)
     : tolerance_(tolerance) {
-  ReferenceSurface<D> own;
-  if constexpr (D < 4)
-    if (!surface) own = surface_of(mesh, feature_angle);
+  outer = std::min(outer, mesh.facets.size());
+  ReferenceSurface<D> reference;
+  std::vector<std::int32_t> patch = mesh.facet_face;  // [facet of the mesh]
+  if constexpr (D < 4) {
+    if (!surface || outer < mesh.facets.size()) {
+      ReferenceSurface<D> own = surface_of(mesh, feature_angle);
+      patch = own.facet_face;
+      if (surface) {
+        std::copy_n(mesh.facet_face.begin(), outer, patch.begin());
+        own = joined(*surface, own, outer, patch);
+      }
+      reference = std::move(own);
+    } else {
+      reference = *surface;
+    }
+    first_interface_ =
+        static_cast<std::int32_t>(reference.facets.size() - (mesh.facets.size() - outer));
+  }
   std::map<std::array<std::int32_t, 3>, std::int32_t> index;
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     const std::int32_t face = mesh.facet_face[f];
-    const std::int32_t patch = own.facets.empty() ? face : own.facet_face[f];
-    const auto [it, added] = index.try_emplace({mesh.facet_group[f], face, patch},
+    const auto [it, added] = index.try_emplace({mesh.facet_group[f], face, patch[f]},
                                                static_cast<std::int32_t>(tags_.size()));
-    if (added) tags_.push_back({mesh.facet_group[f], face, patch});
+    if (added) tags_.push_back({mesh.facet_group[f], face, patch[f], f >= outer});
     facet_tag_.push_back(it->second);
   }
   fixed_.assign(mesh.points.size(), 0);
@@ -217,61 +317,145 @@ BoundaryModel<D>::BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurfa
   for (std::size_t e = 0; e < mesh.elements.size(); ++e)
     if (frozen_body(mesh.element_body[e]))
       for (NodeId n : mesh.elements[e]) fixed_[n] = 1;
-  if constexpr (D == 4) return;
   if constexpr (D < 4) {
-    if (!surface) surface = &own;
-    normals_ = unit_normals(*surface);
-    facet_face_ = surface->facet_face;
-    locator_ = std::make_unique<Search>(*surface);
-
-    // A face is planar when all its vertices lie in the plane of its largest facet.
-    std::int32_t patches = 0;
-    for (const Tag& t : tags_) patches = std::max(patches, t.patch + 1);
-    for (std::int32_t f : facet_face_) patches = std::max(patches, f + 1);
-    planes_.resize(patches);
-    plane_tolerance_ = 1e-3 * tolerance;
-    std::vector<double> largest(patches, 0);
-    for (std::size_t f = 0; f < surface->facets.size(); ++f) {
-      std::array<Vec<D>, D> p;
-      for (int k = 0; k < D; ++k) p[k] = surface->points[surface->facets[f][k]];
-      const double size = facet_normal<D>(p).squaredNorm();
-      const std::int32_t patch = facet_face_[f];
-      if (size <= largest[patch]) continue;
-      largest[patch] = size;
-      planes_[patch] = {normals_[f], p[0], true};
+    normals_ = unit_normals(reference);
+    facet_face_ = reference.facet_face;
+    find_planes(reference);
+    find_features(mesh, reference, feature_angle);
+    if (first_interface_ < static_cast<std::int32_t>(reference.facets.size())) {
+      ReferenceSurface<D> inner;
+      inner.points = reference.points;
+      inner.facets.assign(reference.facets.begin() + first_interface_, reference.facets.end());
+      interfaces_ = std::make_unique<Search>(inner);
+      reference.facets.resize(static_cast<std::size_t>(first_interface_));
+      reference.facet_face.resize(reference.facets.size());
     }
-    for (std::size_t f = 0; f < surface->facets.size(); ++f) {
-      Plane& plane = planes_[facet_face_[f]];
-      for (auto v : surface->facets[f])
-        if (std::abs(plane.normal.dot(surface->points[v] - plane.origin)) > plane_tolerance_)
-          plane.planar = false;
+    locator_ = std::make_unique<Search>(reference);
+    if (surface) measure_first(mesh);
+  }
+}
+
+/// A face is planar when all its vertices lie in the plane of its largest facet. Keeps the vertices
+/// that do not lie inside of planar faces.
+template <int D>
+void BoundaryModel<D>::find_planes(const ReferenceSurface<D>& reference) {
+  std::int32_t patches = 0;
+  for (const Tag& t : tags_) patches = std::max(patches, t.patch + 1);
+  for (std::int32_t f : facet_face_) patches = std::max(patches, f + 1);
+  planes_.resize(patches);
+  plane_tolerance_ = 1e-3 * tolerance_;
+  std::vector<double> largest(patches, 0);
+  for (std::size_t f = 0; f < reference.facets.size(); ++f) {
+    std::array<Vec<D>, D> p;
+    for (int k = 0; k < D; ++k) p[k] = reference.points[reference.facets[f][k]];
+    const double size = facet_normal<D>(p).squaredNorm();
+    const std::int32_t patch = facet_face_[f];
+    if (size <= largest[patch]) continue;
+    largest[patch] = size;
+    planes_[patch] = {normals_[f], p[0], true};
+  }
+  for (std::size_t f = 0; f < reference.facets.size(); ++f) {
+    Plane& plane = planes_[facet_face_[f]];
+    for (auto v : reference.facets[f])
+      if (std::abs(plane.normal.dot(reference.points[v] - plane.origin)) > plane_tolerance_)
+        plane.planar = false;
+  }
+  std::vector<char> curved(reference.points.size(), 0);
+  std::vector<std::int32_t> face_at(reference.points.size(), -1);
+  for (std::size_t f = 0; f < reference.facets.size(); ++f)
+    for (auto v : reference.facets[f]) {
+      const std::int32_t face = facet_face_[f];
+      if (!planes_[face].planar || (face_at[v] >= 0 && face_at[v] != face)) curved[v] = 1;
+      face_at[v] = face;
     }
+  std::vector<Vec<D>> points;
+  for (std::size_t v = 0; v < curved.size(); ++v)
+    if (curved[v]) points.push_back(reference.points[v]);
+  curved_ = std::make_unique<Vertices>(std::move(points));
+}
 
-    std::vector<Vec<D>> corners;
-    for (auto c : surface->corners) corners.push_back(surface->points[c]);
-    std::sort(corners.begin(), corners.end(), lexicographic<D>);
-    for (const auto& f : mesh.facets)
-      for (NodeId n : f)
-        if (std::binary_search(corners.begin(), corners.end(), mesh.points[n], lexicographic<D>))
-          fixed_[n] = 1;
+/// Feature edges of the reference, borders of groups where it has none, and the nodes at corners.
+template <int D>
+void BoundaryModel<D>::find_features(const SimplexMesh<D>& mesh,
+                                     const ReferenceSurface<D>& reference, double feature_angle) {
+  std::vector<Vec<D>> corners;
+  for (auto c : reference.corners) corners.push_back(reference.points[c]);
+  std::sort(corners.begin(), corners.end(), lexicographic<D>);
+  for (const auto& f : mesh.facets)
+    for (NodeId n : f)
+      if (std::binary_search(corners.begin(), corners.end(), mesh.points[n], lexicographic<D>))
+        fixed_[n] = 1;
 
-    if constexpr (D == 3) {
-      const auto ridges = ridges_of<D>(surface->facets);
-      std::vector<typename Features::Segment> segments;
-      for (const auto& e : surface->feature_edges) {
-        segments.push_back({surface->points[e[0]], surface->points[e[1]]});
-        Ridge<D> r{{std::min(e[0], e[1]), std::max(e[0], e[1])}, -1};
-        std::vector<std::int32_t> faces;
-        for (auto it = std::lower_bound(ridges.begin(), ridges.end(), r);
-             it != ridges.end() && it->nodes == r.nodes; ++it)
-          faces.push_back(facet_face_[it->facet]);
-        for (std::size_t i = 0; i < faces.size(); ++i)
-          for (std::size_t j = i + 1; j < faces.size(); ++j)
-            if (faces[i] != faces[j]) hard_pairs_.push_back(pair_key(faces[i], faces[j]));
-      }
-      std::sort(hard_pairs_.begin(), hard_pairs_.end());
-      hard_pairs_.erase(std::unique(hard_pairs_.begin(), hard_pairs_.end()), hard_pairs_.end());
-      if (!segments.empty()) features_ = std::make_unique<Features>(std::move(segments));
+  if constexpr (D == 3) {
+    using Segment = typename Features::Segment;
+    const auto ridges = ridges_of<D>(reference.facets);
+    std::vector<Segment> segments;
+    std::vector<char> on_feature(reference.points.size(), 0);
+    for (const auto& e : reference.feature_edges) {
+      segments.push_back({reference.points[e[0]], reference.points[e[1]]});
+      for (auto v : e) on_feature[v] = 1;
+      Ridge<D> r{{std::min(e[0], e[1]), std::max(e[0], e[1])}, -1};
+      std::vector<std::int32_t> faces;
+      for (auto it = std::lower_bound(ridges.begin(), ridges.end(), r);
+           it != ridges.end() && it->nodes == r.nodes; ++it)
+        faces.push_back(facet_face_[it->facet]);
+      for (std::size_t i = 0; i < faces.size(); ++i)
+        for (std::size_t j = i + 1; j < faces.size(); ++j)
+          if (faces[i] != faces[j]) hard_pairs_.push_back(pair_key(faces[i], faces[j]));
+    }
+    std::sort(hard_pairs_.begin(), hard_pairs_.end());
+    hard_pairs_.erase(std::unique(hard_pairs_.begin(), hard_pairs_.end()), hard_pairs_.end());
+    std::vector<Vec<D>> vertices;
+    for (std::size_t v = 0; v < on_feature.size(); ++v)
+      if (on_feature[v]) vertices.push_back(reference.points[v]);
+    if (!segments.empty()) features_ = std::make_unique<Features>(segments);
+
+    std::map<NodeId, std::vector<NodeId>> border_at;
+    std::vector<std::array<NodeId, 2>> borders;
+    const auto own = ridges_of<D>(mesh.facets);
+    for (std::size_t i = 0; i < own.size();) {
+      std::size_t j = i + 1;
+      bool differ = false;
+      for (; j < own.size() && own[j].nodes == own[i].nodes; ++j)
+        differ = differ || mesh.facet_group[own[j].facet] != mesh.facet_group[own[i].facet];
+      const auto [a, b] = own[i].nodes;
+      i = j;
+      if (!differ ||
+          nearest_feature(0.5 * (mesh.points[a] + mesh.points[b]), std::max(tolerance_, 1e-300)))
+        continue;
+      borders.push_back({a, b});
+      border_at[a].push_back(b);
+      border_at[b].push_back(a);
+    }
+    for (const auto& [a, b] : borders) segments.push_back({mesh.points[a], mesh.points[b]});
+    for (const auto& [n, ends] : border_at) {
+      vertices.push_back(mesh.points[n]);
+      if (ends.size() != 2) continue;  // the mesh tells by itself
+      const Vec<D> a = (mesh.points[ends[0]] - mesh.points[n]).normalized();
+      const Vec<D> b = (mesh.points[n] - mesh.points[ends[1]]).normalized();
+      if (a.dot(b) < std::cos(feature_angle)) fixed_[n] = 1;
+    }
+    if (!borders.empty()) features_ = std::make_unique<Features>(std::move(segments));
+    on_features_ = std::make_unique<Vertices>(std::move(vertices));
+  }
+}
+
+template <int D>
+void BoundaryModel<D>::measure_first(const SimplexMesh<D>& mesh) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<double> of_facet(mesh.facets.size());
+  parallel_each(of_facet.size(), 0, {}, [&](std::size_t f) {
+    of_facet[f] = deviation(mesh.corners(mesh.facets[f]), -1, facet_tag_[f], infinity);
+  });
+  for (double d : of_facet) first_deviation_ = std::max(first_deviation_, d);
+  if constexpr (D == 3) {
+    const auto ridges = ridges_of<D>(mesh.facets);
+    for (std::size_t i = 0; features_ && i + 1 < ridges.size(); ++i) {
+      const auto &r = ridges[i], &q = ridges[i + 1];
+      if (r.nodes != q.nodes || !hard(facet_tag_[r.facet], facet_tag_[q.facet])) continue;
+      const Vec<D> middle = 0.5 * (mesh.points[r.nodes[0]] + mesh.points[r.nodes[1]]);
+      const auto on = nearest_feature(middle, 1e150);
+      first_deviation_ = std::max(first_deviation_, (*on - middle).norm());
     }
   }
 }
@@ -286,11 +470,84 @@ bool BoundaryModel<D>::hard(std::int32_t a, std::int32_t b) const {
 }
 
 template <int D>
-std::optional<Nearest<D>> BoundaryModel<D>::nearest(const Vec<D>& x, double within) const {
+std::optional<Nearest<D>> BoundaryModel<D>::nearest(const Vec<D>& x, double within,
+                                                    std::int32_t t) const {
   if constexpr (D < 4) {
-    if (locator_) return locator_->nearest(x, within);
+    if (!tags_[t].interface) return locator_->nearest(x, within);
+    auto found = interfaces_->nearest(x, within);
+    if (found) found->facet += first_interface_;
+    return found;
   }
   return std::nullopt;
+}
+
+template <int D>
+double BoundaryModel<D>::deviation(const std::array<Vec<D>, D>& p, int apex, std::int32_t t,
+                                   double limit) const {
+  if constexpr (D < 4) {
+    constexpr int order = 4;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    // Below this share of the tolerance the facet below the point before is near enough; above this
+    // share of the limit the lattice is refined.
+    constexpr double close = 0.7;
+    const double safe2 = close * close * tolerance_ * tolerance_;
+    const Search& search = tags_[t].interface ? *interfaces_ : *locator_;
+    std::int32_t below = -1;
+    const bool all = apex < 0;
+    if (all) apex = 0;
+    double most2 = 0;
+    const auto near = [&](const Vec<D>& x) {
+      std::optional<Nearest<D>> on;
+      if (below >= 0) on = search.nearest_on_facet(x, below);
+      if (!on || on->distance2 > safe2) {
+        const bool known = on && on->distance2 < limit * limit;
+        const auto nearer = search.nearest(x, known ? std::sqrt(on->distance2) : limit);
+        if (!nearer && !known) return false;
+        if (nearer) on = nearer;
+      }
+      below = on->facet;
+      most2 = std::max(most2, on->distance2);
+      return true;
+    };
+    const Vec<D>& a = p[apex];
+    // The distance to one flat facet is convex: what all corners keep, the whole facet keeps.
+    if (!near(std::accumulate(p.begin() + 1, p.end(), p[0]) / D)) return infinity;
+    if (std::all_of(p.begin(), p.end(), [&](const Vec<D>& x) {
+          return search.nearest_on_facet(x, below).distance2 <= tolerance_ * tolerance_;
+        }))
+      return std::sqrt(most2);
+    if constexpr (D == 2) {
+      for (int i = 1; i < order; ++i)
+        if (!near((i * a + (order - i) * p[1 - apex]) / order)) return infinity;
+    } else if constexpr (D == 3) {
+      const Vec<D>&b = p[(apex + 1) % 3], &c = p[(apex + 2) % 3];
+      for (int i = all ? 0 : 1; i < order; ++i)
+        for (int j = 0; i + j <= order; ++j)
+          if (!near((i * a + j * b + (order - i - j) * c) / order)) return infinity;
+      constexpr int fine = 2 * order;
+      if (most2 > close * close * limit * limit)
+        for (int i = all ? 0 : 1; i < fine; ++i)
+          for (int j = 0; i + j <= fine; ++j)
+            if ((i % 2 != 0 || j % 2 != 0) && !near((i * a + j * b + (fine - i - j) * c) / fine))
+              return infinity;
+    }
+    return std::sqrt(most2);
+  }
+  return 0;
+}
+
+template <int D>
+void BoundaryModel<D>::vertices_in(const Vec<D>& low, const Vec<D>& high,
+                                   std::vector<Vec<D>>& found) const {
+  found.clear();
+  if (curved_) curved_->in_box(0, curved_->points.size(), low, high, found);
+}
+
+template <int D>
+void BoundaryModel<D>::feature_vertices_in(const Vec<D>& low, const Vec<D>& high,
+                                           std::vector<Vec<D>>& found) const {
+  found.clear();
+  if (on_features_) on_features_->in_box(0, on_features_->points.size(), low, high, found);
 }
 
 template <int D>

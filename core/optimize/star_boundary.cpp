@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/geometry/foot.h"
 #include "core/optimize/star_optimizer.h"
 
 namespace lamella {
@@ -84,12 +85,19 @@ template <int D>
 std::optional<Vec<D>> StarOptimizer<D>::point_on_boundary(const Vec<D>& x, bool on_feature,
                                                           double reach) const {
   if (!model_.has_surface()) return x;
+  // A mesh that does not lie on the surface yet must find it.
+  const auto nearest = [this](double r, const auto& search) {
+    auto p = search(r);
+    if (!p && r < 2 * model_.first_deviation()) p = search(2 * model_.first_deviation());
+    return p;
+  };
   if (on_feature) {
-    const auto p = model_.nearest_feature(x, reach);
+    const auto p = nearest(reach, [&](double r) { return model_.nearest_feature(x, r); });
     if (!p) return std::nullopt;
     return (*p - x).norm() > flat_ ? *p : x;
   }
-  const auto p = model_.nearest(x, reach);
+  const std::int32_t tag = topo_.label[virtual_faces_[0].element];
+  const auto p = nearest(reach, [&](double r) { return model_.nearest(x, r, tag); });
   if (!p) return std::nullopt;
   return p->distance2 > flat_ * flat_ ? p->point : x;
 }
@@ -121,24 +129,98 @@ int StarOptimizer<D>::free_directions(const BoundarySite& site, Mat<D>& basis) c
   return site.on_feature ? 1 : D - 1;
 }
 
-/// Whether a lattice of points on a new facet (quarters of the way between its nodes) lies within
-/// the chord tolerance; the side that the facet shares with the old boundary is left out.
+/// How far the facets of the cavity lie from the surface.
 template <int D>
-bool StarOptimizer<D>::follows_surface(const std::array<Vec<D>, D>& p, const Facet& nodes,
-                                       NodeId replaced) const {
-  constexpr int order = 4;
-  int apex = 0;
-  while (nodes[apex] != replaced) ++apex;
-  const double tol = model_.tolerance();
-  const Vec<D>& a = p[apex];
-  if constexpr (D == 2) {
-    for (int i = 1; i < order; ++i)
-      if (!model_.nearest((i * a + (order - i) * p[1 - apex]) / order, tol)) return false;
-  } else if constexpr (D == 3) {
-    const Vec<D>&b = p[(apex + 1) % 3], &c = p[(apex + 2) % 3];
-    for (int i = 1; i < order; ++i)
-      for (int j = 0; i + j <= order; ++j)
-        if (!model_.nearest((i * a + j * b + (order - i - j) * c) / order, tol)) return false;
+double StarOptimizer<D>::star_deviation(const BoundarySite& site) const {
+  double most = 0;
+  for (auto e : cavity_) {
+    if (!topo_.is_virtual(e)) continue;
+    const Facet nodes = Topology<D>::facet_of(topo_.elements[e]);
+    std::array<Vec<D>, D> p;
+    int apex = 0;
+    for (int k = 0; k < D; ++k) {
+      p[k] = topo_.points[nodes[k]];
+      if (nodes[k] == site.a) apex = k;
+    }
+    most = std::max(most, model_.deviation(p, apex, topo_.label[e], 2 * model_.first_deviation()));
+  }
+  return most;
+}
+
+/// How far the feature edges at the node or edge that is removed lie from those of the surface.
+template <int D>
+double StarOptimizer<D>::feature_deviation(const BoundarySite& site) const {
+  double most = 0;
+  for (NodeId n : site.ends) {
+    if (n == 0) continue;
+    const Vec<D> middle = 0.5 * (topo_.points[n] + site.anchor);
+    const auto on = model_.nearest_feature(middle, 2 * model_.first_deviation());
+    if (on) most = std::max(most, (*on - middle).norm());
+  }
+  // The middle of an edge that is split.
+  if (site.b != 0)
+    if (const auto on = model_.nearest_feature(site.anchor, 2 * model_.first_deviation()))
+      most = std::max(most, (*on - site.anchor).norm());
+  return most;
+}
+
+/// Whether the vertices of the surface within the chord tolerance of the old facets are within it
+/// of the new ones, and those of its feature edges of the new feature edges: what the mesh covers
+/// stays covered.
+template <int D>
+bool StarOptimizer<D>::keeps_vertices(const Apex& apex, const BoundarySite& site) {
+  if constexpr (D < 4) {
+    const double tol2 = model_.tolerance() * model_.tolerance();
+    Vec<D> lo = Vec<D>::Constant(1e300), hi = -lo;
+    const auto include = [&](const Vec<D>& x) {
+      lo = lo.cwiseMin(x);
+      hi = hi.cwiseMax(x);
+    };
+    const Vec<D> around = Vec<D>::Constant(model_.tolerance());
+    const auto facet = [this](const Element& e) {
+      const Facet nodes = Topology<D>::facet_of(e);
+      std::array<Vec<D>, D> p;
+      for (int k = 0; k < D; ++k) p[k] = topo_.points[nodes[k]];
+      return p;
+    };
+    const auto near = [&](const std::array<Vec<D>, D>& p, const Vec<D>& x) {
+      return (foot_on_facet(p, x).point - x).squaredNorm() <= tol2;
+    };
+    for (auto e : cavity_)
+      if (topo_.is_virtual(e))
+        for (const Vec<D>& x : facet(topo_.elements[e])) include(x);
+    model_.vertices_in(lo - around, hi + around, vertices_);
+    if (!vertices_.empty()) {
+      new_facets_.clear();
+      for (const auto& f : virtual_faces_) {
+        if (apex.node != 0 && f.contains(apex.node)) continue;
+        const Element& old = topo_.elements[f.element];
+        auto p = facet(old);
+        const Facet nodes = Topology<D>::facet_of(old);
+        for (int k = 0; k < D; ++k)
+          if (nodes[k] == old[f.place]) p[k] = apex.point;
+        new_facets_.push_back(p);
+      }
+      for (const Vec<D>& x : vertices_) {
+        if (std::any_of(new_facets_.begin(), new_facets_.end(),
+                        [&](const auto& p) { return near(p, x); }))
+          continue;
+        for (auto e : cavity_)
+          if (topo_.is_virtual(e) && near(facet(topo_.elements[e]), x)) return false;
+      }
+    }
+    if (site.ends[0] == 0) return true;
+    // The old feature edges; of an edge that is split, itself.
+    const Vec<D>&a = topo_.points[site.ends[0]], &b = topo_.points[site.ends[1]];
+    const Vec<D> lowest = a.cwiseMin(b).cwiseMin(site.anchor);
+    const Vec<D> highest = a.cwiseMax(b).cwiseMax(site.anchor);
+    model_.feature_vertices_in(lowest - around, highest + around, vertices_);
+    const auto near_line = [&](const Vec<D>& middle, const Vec<D>& x) {
+      return (foot_on_segment<D>(a, middle, x).point - x).squaredNorm() <= tol2 ||
+             (foot_on_segment<D>(middle, b, x).point - x).squaredNorm() <= tol2;
+    };
+    for (const Vec<D>& x : vertices_)
+      if (!near_line(apex.point, x) && near_line(site.anchor, x)) return false;
   }
   return true;
 }
@@ -167,11 +249,25 @@ bool StarOptimizer<D>::borders_allow(const Apex& apex, const BoundarySite& site)
   return true;
 }
 
-/// The new boundary facets of an apex against the surface: nowhere turned, near the anchor
-/// that is removed, and within the chord tolerance of the original surface; so must the feature
-/// edges from the apex to its ends be. Fills retag_.
+/// Whether the boundary facets of an apex may replace those of the cavity. Where the mesh has yet
+/// to be brought to the surface they need only be no farther from it than what they replace. Fills
+/// retag_.
 template <int D>
 bool StarOptimizer<D>::boundary_allows(const Apex& apex, const BoundarySite& site) {
+  const double tol = model_.tolerance(), lattice = model_.lattice_tolerance();
+  if (boundary_within(apex, site, lattice, tol)) return true;
+  if (!(model_.first_deviation() > lattice)) return false;
+  const double deviation = star_deviation(site), feature = feature_deviation(site);
+  if (deviation <= lattice && feature <= tol) return false;
+  return boundary_within(apex, site, std::max(lattice, deviation), std::max(tol, feature));
+}
+
+/// The new boundary facets of an apex against the surface: nowhere turned, near the anchor
+/// that is removed, and within the limit of the original surface; so must the feature
+/// edges from the apex to its ends be. Fills retag_.
+template <int D>
+bool StarOptimizer<D>::boundary_within(const Apex& apex, const BoundarySite& site, double limit,
+                                       double feature_limit) {
   const Vec<D>& anchor = site.anchor;
   const bool ends = site.ends[0] != 0;
   if (D == 4 && site.b == 0 && !borders_allow(apex, site)) return false;
@@ -182,7 +278,9 @@ bool StarOptimizer<D>::boundary_allows(const Apex& apex, const BoundarySite& sit
     retag_[i] = topo_.label[virtual_faces_[i].element];
     one_tag = one_tag && retag_[i] == retag_[0];
   }
-  const double tol = model_.tolerance();
+  // Beyond the tolerance this only bounds what is looked at: a facet that rises to the surface lies
+  // above the middle of the edge it replaces by more than its own deviation.
+  const double most_height = limit > model_.tolerance() ? 2 * limit : model_.tolerance();
   if (ends) {
     // The removed node must lie on the new feature line; facets alone do not tell, as all those on
     // one side of the line may vanish.
@@ -193,7 +291,7 @@ bool StarOptimizer<D>::boundary_allows(const Apex& apex, const BoundarySite& sit
       const double t = std::clamp((anchor - apex.point).dot(e) / e.squaredNorm(), 0.0, 1.0);
       off2 = std::min(off2, (anchor - apex.point - t * e).squaredNorm());
     }
-    if (off2 > tol * tol) return false;
+    if (off2 > feature_limit * feature_limit) return false;
     if (off2 > flat_ * flat_) flat = false;
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -222,12 +320,13 @@ bool StarOptimizer<D>::boundary_allows(const Apex& apex, const BoundarySite& sit
     if (site.second)
       flat_height = std::max(flat_height, std::abs(after.dot(*site.second - apex.point)) / na);
     if (!known || flat_height > flat_) flat = false;
-    if (height > tol) return false;
+    if (height > most_height) return false;
     for (int k = 0; k < D && planar; ++k) planar = model_.in_plane(retag_[i], q[k]);
   }
   // Flat facets over a curved face were tested at their own points only: new ones are tested again.
   if (flat && ((one_tag && planar) || !model_.has_surface())) return true;
   if (!model_.has_surface()) return false;
+  if (!flat && !keeps_vertices(apex, site)) return false;
 
   for (std::size_t i = 0; i < count; ++i) {
     const auto& f = virtual_faces_[i];
@@ -236,23 +335,26 @@ bool StarOptimizer<D>::boundary_allows(const Apex& apex, const BoundarySite& sit
     const Facet nodes = Topology<D>::facet_of(old);
     std::array<Vec<D>, D> q;
     Vec<D> center = Vec<D>::Zero();
+    int top = 0;
     for (int k = 0; k < D; ++k) {
+      if (nodes[k] == old[f.place]) top = k;
       q[k] = nodes[k] == old[f.place] ? apex.point : topo_.points[nodes[k]];
       center += q[k] / D;
     }
     const Vec<D> normal = facet_normal<D>(q).normalized();
-    const auto at = model_.nearest(center, tol);
+    const auto at = model_.nearest(center, limit, retag_[i]);
     if (!at) return false;
     if (!flat && model_.normal(at->facet).dot(normal) < surface_turn) return false;
     if (!one_tag) {
       const std::int32_t t = model_.tag_on(retag_[i], at->facet);
       if (!model_.hard(t, retag_[i])) retag_[i] = t;
     }
-    if (!(flat && planar) && !follows_surface(q, nodes, old[f.place])) return false;
+    if (!(flat && planar) && model_.deviation(q, top, retag_[i], limit) > limit) return false;
   }
   if (!flat && ends)
     for (NodeId n : site.ends)
-      if (n != apex.node && !model_.nearest_feature(0.5 * (apex.point + topo_.points[n]), tol))
+      if (n != apex.node &&
+          !model_.nearest_feature(0.5 * (apex.point + topo_.points[n]), feature_limit))
         return false;
   return true;
 }

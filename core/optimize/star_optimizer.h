@@ -110,7 +110,11 @@ class StarOptimizer {
   bool edge_site(NodeId s, NodeId n, BoundarySite& site);
   bool boundary_allows(const Apex& apex, const BoundarySite& site);
   bool borders_allow(const Apex& apex, const BoundarySite& site) const;
-  bool follows_surface(const std::array<Vec<D>, D>& p, const Facet& nodes, NodeId replaced) const;
+  bool boundary_within(const Apex& apex, const BoundarySite& site, double limit,
+                       double feature_limit);
+  bool keeps_vertices(const Apex& apex, const BoundarySite& site);
+  double star_deviation(const BoundarySite& site) const;
+  double feature_deviation(const BoundarySite& site) const;
   bool topology_allows(const Apex& apex, const BoundarySite& site) const;
   void collect_ring(NodeId s);
   std::optional<Vec<D>> point_on_boundary(const Vec<D>& x, bool on_feature, double reach) const;
@@ -167,6 +171,8 @@ class StarOptimizer {
   std::vector<RingNode> ring_;
   std::vector<std::int32_t> retag_;  ///< [virtual face] tag of the new facet
   std::vector<std::int32_t> best_retag_;
+  std::vector<Vec<D>> vertices_;  ///< of the surface, near the star
+  std::vector<std::array<Vec<D>, D>> new_facets_;
   std::vector<std::int32_t> star_;
   struct OwnedEdge {
     NodeId node;   ///< its other end

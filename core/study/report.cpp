@@ -45,6 +45,10 @@ Json histogram_json(const Histogram& h) {
   return {{"low", h.low}, {"high", h.high}, {"counts", h.counts}};
 }
 
+Json farthest_json(const FarthestPoint& p) {
+  return {{"distance", p.distance}, {"place", {p.place[0], p.place[1], p.place[2]}}};
+}
+
 Json body_json(const BodyOutcome& body) {
   Json records = Json::array();
   for (const IterationRecord& r : body.records) records.push_back(iteration_json(r));
@@ -53,7 +57,9 @@ Json body_json(const BodyOutcome& body) {
           {"first_mesh_by", body.first_mesh_by},
           {"cad_volume", body.cad_volume},
           {"mesh_volume", body.mesh_volume},
-          {"boundary_distance", body.boundary_distance},
+          {"boundary_distance", body.boundary_distance.largest()},
+          {"boundary_to_part", farthest_json(body.boundary_distance.to_surface)},
+          {"part_to_boundary", farthest_json(body.boundary_distance.from_surface)},
           {"chord_tolerance", body.chord_tolerance},
           {"h_min", body.h_min},
           {"layers", layers_json(body.layers)},

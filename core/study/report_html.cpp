@@ -51,6 +51,18 @@ std::string cell(const std::string& text, bool left = false) {
   return (left ? "<td class=\"left\">" : "<td>") + text + "</td>";
 }
 
+std::string fixed(double value, int decimals) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+/// A distance; where it was found shows when it is pointed at.
+std::string far_cell(const FarthestPoint& p) {
+  return "<td title=\"at " + fixed(p.place[0], 3) + ", " + fixed(p.place[1], 3) + ", " +
+         fixed(p.place[2], 3) + "\">" + short_number(p.distance, 3) + "</td>";
+}
+
 std::string row(const std::string& name, const std::string& value) {
   return "<tr><td>" + escaped(name) + "</td><td>" + value + "</td></tr>";
 }
@@ -64,12 +76,6 @@ std::string difference(double mesh, double cad) {
   if (!(cad > 0)) return "-";
   char text[32];
   std::snprintf(text, sizeof text, "%+.3f %%", 100 * (mesh - cad) / cad);
-  return text;
-}
-
-std::string fixed(double value, int decimals) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
   return text;
 }
 
@@ -113,7 +119,7 @@ std::string verdict(const Report& r) {
   for (const BodyOutcome& b : r.outcome.bodies) {
     if (b.cad_volume > 0)
       worst_volume = std::max(worst_volume, std::abs(b.mesh_volume / b.cad_volume - 1));
-    near = near && b.boundary_distance <= b.chord_tolerance * (1 + 1e-9);
+    near = near && b.boundary_distance.largest() <= b.chord_tolerance * (1 + 1e-9);
     layers = layers && (b.layers.places == 0 ||
                         (b.layers.mean >= b.layers_asked && b.layers.p5 >= 0.9 * b.layers_asked));
   }
@@ -147,15 +153,17 @@ std::string bodies_table(const Report& r) {
   std::string html =
       "<h2>Bodies</h2><table><tr><th>body</th><th>n</th><th>layers mean</th><th>5 %</th>"
       "<th>median</th><th>&ge; n</th><th>CAD volume mm&sup3;</th><th>mesh</th>"
-      "<th>boundary distance mm</th><th>tolerance</th><th>h min</th><th>first mesh by</th></tr>";
+      "<th>boundary to part mm</th><th>part to boundary</th><th>tolerance</th><th>h "
+      "min</th><th>first mesh by</th></tr>";
   for (const BodyOutcome& b : r.outcome.bodies)
     html += "<tr>" + cell(escaped(b.name), true) + cell(std::to_string(b.layers_asked)) +
             cell(layers_text(b.layers, b.layers.mean)) + cell(layers_text(b.layers, b.layers.p5)) +
             cell(layers_text(b.layers, b.layers.p50)) +
             cell(b.layers.places ? percent(b.layers.share_reached) : "-") +
             cell(short_number(b.cad_volume, 6)) + cell(difference(b.mesh_volume, b.cad_volume)) +
-            cell(short_number(b.boundary_distance, 3)) + cell(short_number(b.chord_tolerance, 3)) +
-            cell(short_number(b.h_min, 3)) + cell(escaped(b.first_mesh_by)) + "</tr>";
+            far_cell(b.boundary_distance.to_surface) + far_cell(b.boundary_distance.from_surface) +
+            cell(short_number(b.chord_tolerance, 3)) + cell(short_number(b.h_min, 3)) +
+            cell(escaped(b.first_mesh_by)) + "</tr>";
   return html + "</table>";
 }
 
@@ -276,8 +284,10 @@ std::string report_html(const Report& report) {
          verdict(report) + tiles(report) + bodies_table(report) + plots(report) +
          conformity_and_settings(report) + files(report) +
          "<footer>Lengths in mm. Quality, conformity and edges are measured in the metric asked; "
-         "layers are counted from wall to wall in the mesh's own metric; boundary distance is the "
-         "largest one of 16 points of each boundary triangle to the reference surface.</footer>"
+         "layers are counted from wall to wall in the mesh's own metric; boundary to part and part "
+         "to "
+         "boundary are the largest distances of any point of one to the other, the part as it was "
+         "tessellated.</footer>"
          "</main></body></html>\n";
 }
 

@@ -24,8 +24,6 @@ double seconds_since(Clock::time_point start) {
 }
 
 constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations share the rest
-// Adaption watches a lattice of points of each boundary facet; those between may lie farther off.
-constexpr double kMaxGuardShare = 0.9;
 constexpr double kMinGuardShare = 0.3;
 // The best elements on average are a little larger than unit; layers are promised, not averages.
 constexpr double kAskedFiner = 1.05;
@@ -77,9 +75,8 @@ class BodyLoop {
     const auto start = Clock::now();
     AdaptParams params;
     // What the tessellation has left of the tolerance.
-    params.chord_tolerance = std::clamp(outcome_.chord_tolerance - part_.chord_error,
-                                        kMinGuardShare * outcome_.chord_tolerance,
-                                        kMaxGuardShare * outcome_.chord_tolerance);
+    params.chord_tolerance = std::max(outcome_.chord_tolerance - part_.chord_error,
+                                      kMinGuardShare * outcome_.chord_tolerance);
     params.seed = options_.seed;
     params.threads = options_.threads;
     // Asked at every accepted point, the detector keeps walls from blurring into their neighbors:
@@ -106,9 +103,9 @@ class BodyLoop {
     outcome_.layers = best.layers;
     outcome_.mesh_volume = best.volume;
     Result<BoundaryDistance> distance =
-        boundary_distance(best_.mesh, Locator<3>(part_.surface), options_.threads, progress);
+        boundary_distance(best_.mesh, part_.surface, options_.threads, progress);
     if (!distance) return distance.error();
-    outcome_.boundary_distance = distance->largest;
+    outcome_.boundary_distance = *distance;
     if (best.layers.places > 0 && best.layers.p5 < 0.9 * settings_.layers)
       outcome_.notes.push_back(
           "At some places the walls have fewer layers than asked: 5 % of their area below " +

@@ -8,6 +8,7 @@
 #include "core/geometry/surface.h"
 #include "core/mesh/simplex_mesh.h"
 #include "core/metric/metric.h"
+#include "core/natural/boundary_distance.h"
 #include "core/optimize/generate.h"
 #include "core/study/record.h"
 #include "core/study/study.h"
@@ -27,12 +28,12 @@ struct MeshState {
 struct BodyOutcome {
   std::string name;
   int layers_asked = 0;
-  std::string first_mesh_by;     ///< name of the mesher that made the first mesh
-  double cad_volume = 0;         ///< mm^3
-  double mesh_volume = 0;        ///< mm^3
-  double boundary_distance = 0;  ///< mm, largest distance of boundary sample points to the surface
-  double chord_tolerance = 0;    ///< mm, the one that was used
-  double h_min = 0;              ///< mm, the one that was used
+  std::string first_mesh_by;           ///< name of the mesher that made the first mesh
+  double cad_volume = 0;               ///< mm^3
+  double mesh_volume = 0;              ///< mm^3
+  BoundaryDistance boundary_distance;  ///< between the mesh and the tessellated part
+  double chord_tolerance = 0;          ///< mm, the one that was used
+  double h_min = 0;                    ///< mm, the one that was used
   LayerStats layers;
   std::vector<IterationRecord> records;
   std::vector<std::string> notes;

@@ -80,7 +80,7 @@ TEST_F(RealRunTest, OpensRunsCancelsRunsAgainCutsAndExports) {
   EXPECT_EQ(body.layers_asked, 2);
   EXPECT_GE(body.layers.mean, 1.9);
   EXPECT_NEAR(body.mesh_volume, body.cad_volume, 0.005 * body.cad_volume);
-  EXPECT_LE(body.boundary_distance, body.chord_tolerance);
+  EXPECT_LE(body.boundary_distance.largest(), body.chord_tolerance);
   const auto state = session().shown_state();
   ASSERT_EQ(state, session().outcome()->state);
   const IterationRecord& record =

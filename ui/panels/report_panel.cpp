@@ -53,7 +53,7 @@ void ReportPanel::refresh() {
     html += cell(QString("%L1").arg(body.mesh_volume, 0, 'f', 1));
     html += cell(tr("%1 %").arg(off, 0, 'f', 3));
     html += cell(tr("%1 of %2 mm")
-                     .arg(body.boundary_distance, 0, 'g', 3)
+                     .arg(body.boundary_distance.largest(), 0, 'g', 3)
                      .arg(body.chord_tolerance, 0, 'g', 3));
     html += cell(QString::fromStdString(body.first_mesh_by).toHtmlEscaped()) + "</tr>";
   }

@@ -48,7 +48,7 @@ double facets_off(const ReferenceSurface<D>& from, const Locator<D>& to) {
   return off;
 }
 
-/// Nodes lie on the reference, facets within the tolerance of it.
+/// Nodes lie on the reference, facets within the tolerance of it, and it within that of them.
 template <int D>
 void expect_on(const SimplexMesh<D>& mesh, const ReferenceSurface<D>& reference, double tolerance) {
   const Locator<D> to_reference(reference);
@@ -56,7 +56,7 @@ void expect_on(const SimplexMesh<D>& mesh, const ReferenceSurface<D>& reference,
   EXPECT_LT(nodes_off<D>(mesh, to_reference), 1e-9);
   EXPECT_LE(facets_off<D>(own, to_reference), tolerance * (1 + 1e-9));
   if constexpr (D == 3) {
-    EXPECT_LE(boundary_distance(mesh, to_reference)->largest, tolerance * (1 + 1e-9));
+    EXPECT_LE(boundary_distance(mesh, reference)->largest(), tolerance * (1 + 1e-9));
   }
 }
 
@@ -117,6 +117,31 @@ TEST(AdaptCurved, ACoarseBallGoesOntoAFineReference) {
   EXPECT_LT(facets_off<D>(boundary_surface<D>(mesh), locator), 0.25 * before);
   const double volume = volumes(fine)[0];
   EXPECT_LT(std::abs(volumes(mesh)[0] - volume), 0.1 * (volume - volumes(coarse)[0]));
+}
+
+TYPED_TEST(AdaptBoundary, AToleranceBelowTheChordErrorOfTheFirstMeshIsReached) {
+  constexpr int D = TypeParam::value;
+  const auto coarse = ball_mesh<D>(D == 2 ? 8 : 4, 1), fine = ball_mesh<D>(D == 2 ? 96 : 24, 1);
+  const auto reference = boundary_surface<D>(fine);
+  AdaptParams params;
+  params.chord_tolerance = (D == 2 ? 0.05 : 0.15) * sagitta<D>(coarse);
+  auto mesh = coarse;
+  for (int i = 0; i < 3; ++i)
+    mesh = adapted<D>(mesh, uniform_metric<D>(D == 2 ? 0.04 : 0.12), params, &reference).mesh;
+  expect_valid(mesh);
+  expect_on<D>(mesh, reference, *params.chord_tolerance);
+}
+
+TEST(AdaptCurved, WhatIsFarFromTheSurfaceNeverGetsFarther) {
+  // Too coarse a size for the tolerance: the boundary may improve, and stays as it is elsewhere.
+  const auto coarse = ball_mesh<3>(4, 1), fine = ball_mesh<3>(16, 1);
+  const auto reference = boundary_surface<3>(fine);
+  AdaptParams params;
+  params.chord_tolerance = 0.01 * sagitta<3>(coarse);
+  const double before = boundary_distance(coarse, reference)->to_surface.distance;
+  const auto out = adapted<3>(coarse, uniform_metric<3>(0.5), params, &reference);
+  expect_valid(out.mesh);
+  EXPECT_LE(boundary_distance(out.mesh, reference)->to_surface.distance, before * (1 + 1e-9));
 }
 
 TYPED_TEST(AdaptBoundary, AFineBallKeepsTheToleranceAtEverySize) {

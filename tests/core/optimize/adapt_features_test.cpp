@@ -1,13 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "core/mesh/interfaces.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/mesh/validate.h"
 #include "core/metric/analytic.h"
+#include "core/natural/boundary_distance.h"
 #include "core/optimize/adapt.h"
+#include "tests/support/solids.h"
 
 namespace lamella {
 namespace {
@@ -69,6 +72,89 @@ void interface_is_adapted_and_held() {
 TEST(AdaptFeatures, AnInterfaceBetweenBodiesIsAdaptedAndStaysInItsPlane) {
   interface_is_adapted_and_held<2>();
   interface_is_adapted_and_held<3>();
+}
+
+/// The boundary of the mesh, without its interfaces.
+ReferenceSurface<3> walls_of(const SimplexMesh<3>& mesh) {
+  ReferenceSurface<3> s;
+  s.points = mesh.points;
+  s.facets.assign(mesh.facets.begin(), mesh.facets.end());
+  s.facet_face = mesh.facet_face;
+  return s;
+}
+
+TEST(AdaptFeatures, InterfacesAreAdaptedAndHeldUnderAnOuterSurfaceToo) {
+  // A ball around the core of a box: a plane interface that meets the wall, and one curved and
+  // closed inside.
+  const auto plane = two_body_box<3>(4);
+  auto nested = unit_box<3>(8);
+  nested.bodies = {"shell", "core"};
+  for (std::size_t e = 0; e < nested.elements.size(); ++e) {
+    Vec<3> center = Vec<3>::Zero();
+    for (NodeId n : nested.elements[e]) center += nested.points[n] / 4;
+    nested.element_body[e] = (center - Vec<3>::Constant(0.5)).lpNorm<Eigen::Infinity>() < 0.25;
+  }
+  for (auto& x : nested.points) {
+    // Blows the inner cube up to a ball; the wall stays.
+    const Vec<3> y = x - Vec<3>::Constant(0.5);
+    const double m = y.lpNorm<Eigen::Infinity>();
+    if (m > 0 && m < 0.499) x = Vec<3>::Constant(0.5) + y * (1 + (m / y.norm() - 1) * (1 - 2 * m));
+  }
+  for (const auto& mesh : {plane, nested}) {
+    SCOPED_TRACE(mesh.bodies[0]);
+    std::vector<Vec<3>> corners;
+    for (int i = 0; i < 8; ++i) corners.push_back(Vec<3>(i & 1, i >> 1 & 1, i >> 2));
+    const auto surface = test::featured_surface(mesh, corners);
+    const MetricFunction<3> metric = uniform<3>(mesh.bodies[0] == "shell" ? 0.07 : 0.12);
+    AdaptParams params;
+    params.chord_tolerance = 0.02;
+    const auto r =
+        adapt<3>(mesh, sample_metric<3>(metric, mesh.points), &surface, params, {}, metric);
+    ASSERT_TRUE(r.ok());
+    ASSERT_TRUE(validate<3>(r->mesh).ok());
+    const auto interface_of = [](const SimplexMesh<3>& m) {
+      SimplexMesh<3> inner = with_interfaces(m);
+      inner.facets.erase(inner.facets.begin(),
+                         inner.facets.begin() + static_cast<std::ptrdiff_t>(m.facets.size()));
+      inner.facet_face.assign(inner.facets.size(), 0);
+      return walls_of(inner);
+    };
+    const auto before = interface_of(mesh), after = interface_of(r->mesh);
+    EXPECT_GT(after.facets.size(), 3 * before.facets.size() / 2);
+    EXPECT_LE(farthest_point(after, before)->distance, 0.02);
+    EXPECT_LE(farthest_point(before, after)->distance, 0.02);
+    EXPECT_LE(boundary_distance(r->mesh, surface)->largest(), 1e-9);
+  }
+}
+
+TEST(AdaptFeatures, TheBorderOfAGroupOnASmoothWallIsRefined) {
+  auto mesh = unit_box<3>(4);
+  mesh.groups = {"walls", "gate"};
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const auto p = mesh.corners(mesh.facets[f]);
+    if (mesh.facet_face[f] == 5 && ((p[0] + p[1] + p[2]) / 3)[0] < 0.5) mesh.facet_group[f] = 1;
+  }
+  const auto border = [](const SimplexMesh<3>& m) {
+    std::map<std::array<NodeId, 2>, int> sides;
+    for (std::size_t f = 0; f < m.facets.size(); ++f)
+      for (int k = 0; k < 3 && m.facet_group[f] == 1; ++k) {
+        std::array<NodeId, 2> e{m.facets[f][k], m.facets[f][(k + 1) % 3]};
+        std::sort(e.begin(), e.end());
+        ++sides[e];
+      }
+    std::pair<int, double> found{0, 0};
+    for (const auto& [e, count] : sides) {
+      const Vec<3>&a = m.points[e[0]], &b = m.points[e[1]];
+      if (count != 1 || a[0] != 0.5 || b[0] != 0.5) continue;
+      ++found.first;
+      found.second += (a - b).norm();
+    }
+    return found;
+  };
+  ASSERT_EQ(border(mesh).first, 4);
+  const auto r = adapted<3>(mesh, uniform<3>(0.1));
+  EXPECT_GE(border(r.mesh).first, 8);
+  EXPECT_NEAR(border(r.mesh).second, 1, 1e-12);
 }
 
 TEST(AdaptFeatures, AFrozenBodyKeepsItsElementsAndTheOtherIsAdapted) {

@@ -39,7 +39,7 @@ Outcome some_outcome() {
   body.first_mesh_by = "algorithm 2.1";
   body.cad_volume = 119.9;
   body.mesh_volume = 120;
-  body.boundary_distance = 0.004;
+  body.boundary_distance = {{0.004, {1, 2, 3}}, {0.003, {4, 5, 6}}};
   body.chord_tolerance = 0.01;
   body.layers = outcome.records.back().layers;
   body.records = outcome.records;

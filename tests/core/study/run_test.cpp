@@ -46,7 +46,7 @@ TEST(Run, APlateGetsItsLayersAndKeepsItsVolume) {
   EXPECT_TRUE(validate<3>(outcome->state->mesh).ok());
   const BodyOutcome& body = outcome->bodies.at(0);
   EXPECT_NEAR(body.mesh_volume, 64, 1e-9);
-  EXPECT_LE(body.boundary_distance, 1e-9);
+  EXPECT_LE(body.boundary_distance.largest(), 1e-9);
   EXPECT_GE(body.layers.mean, 3);
   EXPECT_GE(body.layers.p5, 0.8 * 3);
   EXPECT_EQ(outcome->state->mesh.groups, std::vector<std::string>{"walls"});
