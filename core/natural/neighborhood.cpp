@@ -139,12 +139,13 @@ class Grower {
     bool obstructs = false;  // order k_0 is reached
     for (int k = 1;; ++k) {
       const bool grown = grow();
-      found.bounded = elements_.size() > growth_.largest;
-      const bool last = !grown || found.bounded;
       if (!grown && found.fit) break;
       collect_hull();
       if (k < most && !obstructs) obstructs = hull_parts_boundary();
-      if (!last && !(k >= most || (k >= layer && obstructs))) continue;
+      const bool relevant = k >= most || (k >= layer && obstructs);
+      found.bounded = elements_.size() > (relevant ? 1 : 10) * growth_.largest;
+      const bool last = !grown || found.bounded;
+      if (!last && !relevant) continue;
       bool failed = false;
       const std::optional<EllipticFit<D>> fit = interpolate(failed);
       const bool first = found.least_order == 0;
@@ -326,7 +327,7 @@ Result<NeighborhoodField<D>> neighborhood_field(const SimplexMesh<D>& mesh,
   if (const auto ok = check_params(params); !ok) return ok.error();
   if (!(growth.threshold > 0) || growth.largest == 0)
     return Error{Code::usage, "The error threshold and the size of neighborhoods must be positive.",
-                 "0.76 and 20000 are the usual values."};
+                 "0.76 and 2000 are the usual values."};
   if (mesh.elements.empty())
     return Error{Code::bad_input, "The mesh has no elements to grow neighborhoods in.", ""};
   const std::size_t n = mesh.points.size();

@@ -10,8 +10,10 @@ struct NeighborhoodParams {
   double threshold = 0.76;                       ///< of the interpolation error (4.63)
   std::optional<Interpolation> interpolation{};  ///< unset: M2, where it fails M4, else M1
   PointWeights weights = PointWeights::area;
-  bool edge_middles = true;     ///< see EllipticParams
-  std::size_t largest = 20000;  ///< elements from which on a neighborhood grows no further
+  bool edge_middles = true;  ///< see EllipticParams
+  /// Elements from which on a neighborhood grows no further than k_min; from ten times as many on,
+  /// no further at all. In a wide plate nothing else ends its growth.
+  std::size_t largest = 2000;
 };
 
 /// What algorithm 4.1 found at the nodes of a mesh.
@@ -37,8 +39,7 @@ double average_layers(const std::vector<int>& layer_numbers);
 
 /// The natural metric by neighborhood growing (definitions 4.3 to 4.6, algorithms 4.1 and B.1).
 /// K is the last order before the error (4.63) passes the threshold, but not below k_min. The mesh
-/// is taken as one body. Time is linear in the nodes for given layers through the walls; `largest`
-/// bounds it where there are no walls.
+/// is taken as one body. `largest` keeps the time linear in the nodes.
 /// Errors: those of `check_params`; usage (threshold or `largest` not positive), bad_input (no
 /// elements), cancelled.
 template <int D>
