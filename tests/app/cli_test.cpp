@@ -199,14 +199,17 @@ TEST_F(Cli, TheDetectorIsTakenAndWrittenDown) {
   const auto nodes = [&](const std::string& options) {
     const int status = run("mesh w.step -n 2 --iterations 1 --json -o w.mesh " + options);
     EXPECT_TRUE(status == 0 || status == 4) << err;
-    return lines().back()["nodes"].get<int>();
+    for (const json& line : lines())
+      if (line["phase"] == "done") return line["nodes"].get<int>();
+    ADD_FAILURE() << err;
+    return 0;
   };
   const int by_default = nodes("");
   EXPECT_EQ(nodes("--detector geometric"), by_default);
   EXPECT_NE(nodes("--detector neighborhood"), by_default);
-  const Result<std::string> study = read_file(folder / "w.json");
-  ASSERT_TRUE(study.ok());
-  EXPECT_NE(study->find("neighborhood"), std::string::npos);
+  const Result<std::string> report = read_file(folder / "w.report.json");
+  ASSERT_TRUE(report.ok());
+  EXPECT_EQ(json::parse(*report)["study"]["options"]["detector"], "neighborhood");
 }
 
 TEST_F(Cli, APlateGetsItsLayersAndEveryFileAgrees) {
