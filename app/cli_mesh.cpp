@@ -52,6 +52,7 @@ Result<Request> request_of(const MeshCommand& c) {
   if (c.iterations) o.iterations = *c.iterations;
   if (c.threads) o.threads = *c.threads;
   if (c.seed) o.seed = *c.seed;
+  if (c.detector) o.detector = detector_from_name(*c.detector).value_or(o.detector);
   return request;
 }
 

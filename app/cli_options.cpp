@@ -208,6 +208,11 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->check(CLI::Range(0.0, 1.0));
   add_unit(m, mesh.unit);
   add_mesher(m, mesh.mesher);
+  m->add_option("--detector", mesh.detector,
+                "Who finds the thickness of walls: rays and balls inside the part (geometric), or "
+                "neighborhoods grown in the mesh (neighborhood) [geometric]")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"geometric", "neighborhood"}));
   m->add_option("--report", mesh.report, "Stem of the report: STEM.json and STEM.html [OUT.report]")
       ->option_text("STEM");
   add_json(m, mesh.json);

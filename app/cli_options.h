@@ -20,6 +20,7 @@ struct MeshCommand {
   std::optional<double> min_quality;
   std::string unit = "mm";
   std::string mesher = "auto";
+  std::optional<std::string> detector;
   std::string report;
   bool json = false;
 };

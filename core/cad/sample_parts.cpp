@@ -4,12 +4,14 @@
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepOffsetAPI_MakePipe.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRep_Tool.hxx>
 #include <GC_MakeArcOfCircle.hxx>
@@ -205,6 +207,56 @@ std::vector<Body> twisted_tube() {
   return {{"tube", tube, Quantity_NOC_GOLD}, {"block", block, Quantity_NOC_GRAY70}};
 }
 
+/// Two walls of 2 mm that meet at an edge.
+std::vector<Body> l_profile() {
+  return {{"l profile", fuse(box(0, 0, 0, 30, 40, 2), box(0, 0, 0, 2, 40, 30)), Quantity_NOC_PERU}};
+}
+
+/// Two walls of 2 mm that cross.
+std::vector<Body> cross_junction() {
+  return {{"cross junction", fuse(box(-20, 0, -1, 20, 40, 1), box(-1, 0, -20, 1, 40, 20)),
+           Quantity_NOC_ORCHID}};
+}
+
+/// A wall that grows from 0.4 to 4 mm over 40 mm.
+std::vector<Body> wedge() {
+  BRepBuilderAPI_MakePolygon section;
+  for (const auto& [x, z] : {std::pair{0.0, 0.0}, {40.0, 0.0}, {40.0, 4.0}, {0.0, 0.4}})
+    section.Add(gp_Pnt(x, 0, z));
+  section.Close();
+  const TopoDS_Shape face = BRepBuilderAPI_MakeFace(section.Wire(), Standard_True).Shape();
+  return {{"wedge", BRepPrimAPI_MakePrism(face, gp_Vec(0, 20, 0)).Shape(), Quantity_NOC_TURQUOISE}};
+}
+
+/// A channel 20 mm wide and 2 mm high that winds outward in half circles, as flow tests use.
+std::vector<Body> spiral_mold() {
+  constexpr double kHalfWidth = 10;
+  constexpr double kStep = 15;  // from one half circle's radius to the next: 10 mm between turns
+  constexpr int kHalves = 4;
+  BRepBuilderAPI_MakeWire outline;
+  const auto arc = [&](int half, double aside, bool back) {
+    const double center = half % 2 == 0 ? 0 : kStep;
+    const double radius = 30 + kStep * half + aside;
+    const double side = half % 2 == 0 ? 1 : -1;
+    const gp_Pnt from(center + side * radius, 0, 0), to(center - side * radius, 0, 0);
+    const gp_Pnt over(center, side * radius, 0);
+    outline.Add(BRepBuilderAPI_MakeEdge(
+                    GC_MakeArcOfCircle(back ? to : from, over, back ? from : to).Value())
+                    .Edge());
+  };
+  const auto end = [&](double a, double b) {
+    outline.Add(BRepBuilderAPI_MakeEdge(gp_Pnt(a, 0, 0), gp_Pnt(b, 0, 0)).Edge());
+  };
+  for (int half = 0; half < kHalves; ++half) arc(half, kHalfWidth, false);
+  const double last = kStep + 30 + kStep * (kHalves - 1);
+  end(last + kHalfWidth, last - kHalfWidth);
+  for (int half = kHalves - 1; half >= 0; --half) arc(half, -kHalfWidth, true);
+  end(30 - kHalfWidth, 30 + kHalfWidth);
+  const TopoDS_Shape face = BRepBuilderAPI_MakeFace(outline.Wire(), Standard_True).Shape();
+  return {{"spiral mold", BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, 2)).Shape(),
+           Quantity_NOC_GOLDENROD}};
+}
+
 struct Sample {
   const char* name;
   std::vector<Body> (*make)();
@@ -214,7 +266,11 @@ constexpr Sample kSamples[] = {{"plate", plate},
                                {"ribbed_tray", ribbed_tray},
                                {"curved_shell", curved_shell},
                                {"t_junction", t_junction},
-                               {"twisted_tube", twisted_tube}};
+                               {"twisted_tube", twisted_tube},
+                               {"l_profile", l_profile},
+                               {"cross_junction", cross_junction},
+                               {"wedge", wedge},
+                               {"spiral_mold", spiral_mold}};
 
 /// Booleans wrap their solid in a compound; a part is the solid itself.
 TopoDS_Shape only_solid(const Body& body) {

@@ -9,7 +9,8 @@
 
 namespace lamella {
 
-/// Names of the parts made by code: plate, ribbed_tray, curved_shell, t_junction, twisted_tube.
+/// Names of the parts made by code: plate, ribbed_tray, curved_shell, t_junction, twisted_tube,
+/// l_profile, cross_junction, wedge, spiral_mold.
 std::vector<std::string> sample_names();
 
 /// Writes one of them as STEP AP214 in mm. The twisted tube has two solids, the tube and the block

@@ -15,20 +15,6 @@ double division_share(double ratio, double alpha) {
   return std::clamp(1 - std::log(ratio / full) / std::log(2.0), 0.0, 1.0);
 }
 
-Result<void> check(const NaturalParams& p) {
-  if (p.layers < 1)
-    return Error{Code::usage,
-                 "The number of layers must be at least 1, not " + std::to_string(p.layers) + ".",
-                 "Ask for 1 to 16 layers."};
-  if (!(p.alpha >= 0))
-    return Error{Code::usage, "alpha must not be negative.",
-                 "0 divides the thinnest direction only; 1 is the usual value."};
-  if (!(p.h_min >= 0) || !(p.h_max >= 0) || (p.h_max > 0 && p.h_min > p.h_max))
-    return Error{Code::usage, "The smallest size h_min is above the largest, h_max.",
-                 "Lengths are in mm; h_max = 0 means the diagonal of the part."};
-  return {};
-}
-
 }  // namespace
 
 struct NaturalDetector::Impl {
@@ -61,15 +47,14 @@ Natural NaturalDetector::at(const Vec<3>& x, const NaturalParams& params) const 
   return natural;
 }
 
-Result<NaturalDetector::Field> NaturalDetector::field(const SimplexMesh<3>& mesh,
-                                                      const NaturalParams& params,
-                                                      const Progress& progress) const {
-  if (const auto ok = check(params); !ok) return ok.error();
+Result<NaturalField> NaturalDetector::field(const SimplexMesh<3>& mesh, const NaturalParams& params,
+                                            const Progress& progress) const {
+  if (const auto ok = check_params(params); !ok) return ok.error();
   if (impl_->locator.empty())
     return Error{Code::bad_input, "The body has no surface to measure its walls on.", ""};
   const std::size_t n = mesh.points.size();
-  Field field{MetricField<3>(n, Metric<3>::Identity()), std::vector<double>(n, 0.0),
-              std::vector<Vec<3>>(n, Vec<3>::UnitX())};
+  NaturalField field{MetricField<3>(n, Metric<3>::Identity()), std::vector<double>(n, 0.0),
+                     std::vector<Vec<3>>(n, Vec<3>::UnitX())};
   const bool complete = parallel_each(
       n - 1, params.threads, progress,
       [&](std::size_t i) {
@@ -81,6 +66,10 @@ Result<NaturalDetector::Field> NaturalDetector::field(const SimplexMesh<3>& mesh
       16);
   if (!complete) return cancelled_error();
   return field;
+}
+
+MetricFunction<3> NaturalDetector::function(const NaturalParams& params) const {
+  return [this, params](const Vec<3>& x) { return at(x, params).metric; };
 }
 
 }  // namespace lamella

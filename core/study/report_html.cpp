@@ -236,6 +236,7 @@ std::string conformity_and_settings(const Report& r) {
   html += row("iterations at most", std::to_string(o.iterations));
   html += row("threads", o.threads ? std::to_string(o.threads) : "all cores");
   html += row("seed", std::to_string(o.seed));
+  html += row("detector", std::string(detector_name(o.detector)));
   html += row("time", short_number(r.outcome.seconds, 3) + " s");
   return html + "</table></div></div>";
 }

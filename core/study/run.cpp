@@ -7,7 +7,7 @@
 #include "core/mesh/validate.h"
 #include "core/natural/boundary_distance.h"
 #include "core/natural/layers.h"
-#include "core/natural/natural_metric.h"
+#include "core/natural/thickness_detector.h"
 #include "core/optimize/adapt.h"
 #include "core/study/first_mesh.h"
 #include "core/study/join.h"
@@ -27,6 +27,7 @@ constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations sha
 constexpr double kMinGuardShare = 0.3;
 // The best elements on average are a little larger than unit; layers are promised, not averages.
 constexpr double kAskedFiner = 1.05;
+constexpr double kAskedScale = kAskedFiner * kAskedFiner;  // of the metric
 constexpr double kSettled = 0.05;  // relative change of the node count
 
 constexpr double kGained = 0.02;  // relative rise of the score that is worth another iteration
@@ -64,7 +65,7 @@ class BodyLoop {
     if (!first) return first.error();
     outcome_.first_mesh_by = first->made_by;
     outcome_.notes.insert(outcome_.notes.end(), first->notes.begin(), first->notes.end());
-    detector_.emplace(part_.surface);
+    detector_ = make_detector(options_.detector, part_.surface);
     return accept(std::move(first->mesh), start, progress.portion(0.7, 1));
   }
 
@@ -79,13 +80,16 @@ class BodyLoop {
                                       kMinGuardShare * outcome_.chord_tolerance);
     params.seed = options_.seed;
     params.threads = options_.threads;
-    // Asked at every accepted point, the detector keeps walls from blurring into their neighbors:
-    // two rounds reach what the nodal field does not in six.
-    const auto natural = [this](const Vec<3>& x) -> Metric<3> {
-      return detector_->at(x, natural_).metric * (kAskedFiner * kAskedFiner);
-    };
-    Result<Adapted<3>> adapted = adapt<3>(current_.mesh, current_.metric, &part_.surface, params,
-                                          progress.portion(0, 0.8), natural);
+    // Asked at every accepted point, a detector that can answer there keeps walls from blurring
+    // into their neighbors: two rounds reach what the nodal field does not in six.
+    MetricFunction<3> natural;
+    MetricField<3> asked = current_.metric;
+    if (const MetricFunction<3> function = detector_->function(natural_))
+      natural = [function](const Vec<3>& x) -> Metric<3> { return function(x) * kAskedScale; };
+    else
+      for (Metric<3>& m : asked) m *= kAskedScale;
+    Result<Adapted<3>> adapted =
+        adapt<3>(current_.mesh, asked, &part_.surface, params, progress.portion(0, 0.8), natural);
     if (!adapted) return give_up(adapted.error());
     if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return give_up(valid.error());
@@ -121,8 +125,7 @@ class BodyLoop {
   Result<void> accept(SimplexMesh<3> mesh, Clock::time_point start, const Progress& progress) {
     MeshState next;
     next.mesh = std::move(mesh);
-    Result<NaturalDetector::Field> field =
-        detector_->field(next.mesh, natural_, progress.portion(0, 0.6));
+    Result<NaturalField> field = detector_->field(next.mesh, natural_, progress.portion(0, 0.6));
     if (!field) return field.error();
     next.metric = std::move(field->metric);
     next.thickness = std::move(field->thickness);
@@ -174,7 +177,7 @@ class BodyLoop {
   const StudyOptions& options_;
   const BodySettings settings_;
   NaturalParams natural_;
-  std::optional<NaturalDetector> detector_;
+  std::unique_ptr<ThicknessDetector> detector_;
   MeshState current_, best_;
   double best_score_ = 0;
   std::size_t best_record_ = 0;

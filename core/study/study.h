@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/natural/detector.h"
+
 namespace lamella {
 
 /// What the user asked for one body. Lengths in mm.
@@ -24,6 +26,7 @@ struct StudyOptions {
   int iterations = 6;                       ///< adaptions at most
   int threads = 0;                          ///< 0: all cores; the mesh does not depend on it
   std::uint64_t seed = 1;
+  Detector detector = Detector::geometric;  ///< who finds the wall thickness
 };
 
 /// One immutable value: what the user asked. The files are named, never held.

@@ -110,6 +110,12 @@ StudyOptions read_options(const Json& json, std::string& complaint) {
   m.integer("iterations", options.iterations, 1);
   m.integer("threads", options.threads, 0);
   m.integer("seed", options.seed, 0);
+  std::string detector(detector_name(options.detector));
+  m.text("detector", detector);
+  if (const auto known = detector_from_name(detector))
+    options.detector = *known;
+  else
+    m.complain("detector", "must be \"geometric\" or \"neighborhood\"");
   m.finish();
   return options;
 }
@@ -141,6 +147,7 @@ std::string study_to_json(const Study& study) {
   options["iterations"] = o.iterations;
   options["threads"] = o.threads;
   options["seed"] = o.seed;
+  options["detector"] = detector_name(o.detector);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

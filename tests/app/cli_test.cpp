@@ -97,6 +97,7 @@ TEST_F(Cli, WrongUsageIsStatus2AndWritesNothing) {
         "mesh a.step -o no/such/folder/b.msh",
         "mesh a.step -o",
         "mesh a.step --unit furlong -o b.msh",
+        "mesh a.step --detector radar -o b.msh",
         "adapt a.mesh -o b.mesh",
         "adapt a.mesh --sol a.sol --metric uniform -o b.mesh",
         "adapt a.mesh --metric uniform --background -o b.mesh",
@@ -191,6 +192,24 @@ TEST_F(Cli, BadMeshesAreStatus3) {
   inverted.points[14] += Vec<3>(1.5, 0, 0);
   ASSERT_TRUE(write_medit<3>(inverted, folder / "inverted.mesh").ok());
   EXPECT_EQ(run("check inverted.mesh"), 3);
+}
+
+TEST_F(Cli, TheDetectorIsTakenAndWrittenDown) {
+  ASSERT_EQ(run("sample wedge -o w.step"), 0) << err;
+  const auto nodes = [&](const std::string& options) {
+    const int status = run("mesh w.step -n 2 --iterations 1 --json -o w.mesh " + options);
+    EXPECT_TRUE(status == 0 || status == 4) << err;
+    for (const json& line : lines())
+      if (line["phase"] == "done") return line["nodes"].get<int>();
+    ADD_FAILURE() << err;
+    return 0;
+  };
+  const int by_default = nodes("");
+  EXPECT_EQ(nodes("--detector geometric"), by_default);
+  EXPECT_NE(nodes("--detector neighborhood"), by_default);
+  const Result<std::string> report = read_file(folder / "w.report.json");
+  ASSERT_TRUE(report.ok());
+  EXPECT_EQ(json::parse(*report)["study"]["options"]["detector"], "neighborhood");
 }
 
 TEST_F(Cli, APlateGetsItsLayersAndEveryFileAgrees) {

@@ -14,6 +14,7 @@
 #include "core/metric/analytic.h"
 #include "core/optimize/adapt.h"
 #include "core/study/svg_plot.h"
+#include "tests/validation/page.h"
 
 namespace lamella {
 namespace {
@@ -210,18 +211,6 @@ std::string hypercube_summary(const std::vector<Hypercube>& cubes) {
              " |\n";
   }
   return table;
-}
-
-/// Replaces what stands between the comments "table NAME" and "end" of a page.
-Result<void> set_table(std::string& page, const std::string& name, const std::string& table) {
-  const std::string begin = "<!-- table " + name + " -->\n", end = "<!-- end -->";
-  const std::size_t from = page.find(begin);
-  const std::size_t to = from == std::string::npos ? from : page.find(end, from);
-  if (to == std::string::npos)
-    return Error{Code::bad_input, "The page has no place for the table \"" + name + "\".",
-                 "It stands between the lines <!-- table " + name + " --> and " + end + "."};
-  page.replace(from + begin.size(), to - from - begin.size(), table);
-  return {};
 }
 
 std::string tab_separated(const std::string& name, const Curve& curve) {

@@ -67,6 +67,7 @@ bool Session::outdated() const {
   const Study& a = *run_study_;
   const Study& b = *study_;
   return a.options.iterations != b.options.iterations || a.options.seed != b.options.seed ||
+         a.options.detector != b.options.detector ||
          a.options.chord_tolerance != b.options.chord_tolerance ||
          !std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), b.bodies.end(), same);
 }

@@ -50,6 +50,11 @@ TEST(SampleParts, HaveTheVolumesOfTheirDrawings) {
   // Pappus: the area of the section times the way of its center.
   const double center = 30 + 2.0 / 3 * (125000 - 110592) / (2500 - 2304) * std::sin(0.7) / 0.7;
   EXPECT_NEAR(volume("curved_shell", 0), 0.7 * (2500 - 2304) * 0.9 * center, 1e-6 * 9274);
+  EXPECT_NEAR(volume("l_profile", 0), 2 * 40 * (30 + 28), 1e-6 * 4640);
+  EXPECT_NEAR(volume("cross_junction", 0), 40 * (2 * 40 * 2 - 4), 1e-6 * 6240);
+  EXPECT_NEAR(volume("wedge", 0), 20 * 40 * (0.4 + 4) / 2, 1e-6 * 1760);
+  // Half rings 20 wide around radii 30, 45, 60, 75.
+  EXPECT_NEAR(volume("spiral_mold", 0), 2 * 20 * pi * (30 + 45 + 60 + 75), 1e-6 * 26389);
 }
 
 TEST(SampleParts, UnknownNamesAndFoldersAreRefused) {

@@ -54,6 +54,23 @@ TEST(Run, APlateGetsItsLayersAndKeepsItsVolume) {
   EXPECT_EQ(told.front(), 0);
 }
 
+TEST(Run, TheNeighborhoodDetectorRefinesAcrossThePlate) {
+  Study study;
+  study.bodies = {{"plate", 3}};
+  study.options.detector = Detector::neighborhood;
+  study.options.iterations = 2;
+  const Result<Outcome> outcome = run(study, {plate("plate")}, real());
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  EXPECT_TRUE(validate<3>(outcome->state->mesh).ok());
+  EXPECT_NEAR(outcome->bodies.at(0).mesh_volume, 64, 1e-9);
+  EXPECT_GE(outcome->bodies.at(0).layers.p5, 2);
+  // Another mesh than the default one: the setting is heard.
+  study.options.detector = Detector::geometric;
+  const Result<Outcome> other = run(study, {plate("plate")}, real());
+  ASSERT_TRUE(other.ok());
+  EXPECT_NE(outcome->records.back().nodes, other->records.back().nodes);
+}
+
 TEST(Run, TheNextMesherIsAskedAndTheNotesSaySo) {
   Meshers meshers = real();
   meshers.insert(meshers.begin(), std::make_shared<GivesUp>());

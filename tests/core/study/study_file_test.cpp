@@ -13,7 +13,7 @@ Study full_study() {
   study.name = "Tr\u00e4ger \"A\"";
   study.inputs = {"parts/a.step", "/abs/b.stl"};
   study.bodies = {{"cover", 6, 0.5, 0.01, 3.5, false}, {"lid"}};
-  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u};
+  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood};
   return study;
 }
 
@@ -38,6 +38,7 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(back->options.iterations, 9);
   EXPECT_EQ(back->options.threads, 3);
   EXPECT_EQ(back->options.seed, 12345678901234567890u);
+  EXPECT_EQ(back->options.detector, Detector::neighborhood);
   EXPECT_EQ(study_to_json(*back), study_to_json(study));
 }
 
@@ -46,6 +47,7 @@ TEST(StudyFile, LeftOutMeansDefault) {
   ASSERT_TRUE(study.ok());
   EXPECT_EQ(study->bodies.at(0).layers, BodySettings{}.layers);
   EXPECT_EQ(study->options.iterations, StudyOptions{}.iterations);
+  EXPECT_EQ(study->options.detector, Detector::geometric);
 }
 
 TEST(StudyFile, EveryMistakeIsNamed) {
@@ -61,6 +63,7 @@ TEST(StudyFile, EveryMistakeIsNamed) {
       {R"({"schema": 1, "bodies": [{"name": "a", "layers": 2.5}]})", "bodies[0].layers"},
       {R"({"schema": 1, "bodies": [{"name": "a", "h_min": -1}]})", "bodies[0].h_min"},
       {R"({"schema": 1, "options": {"iterations": "six"}})", "options.iterations"},
+      {R"({"schema": 1, "options": {"detector": "radar"}})", "options.detector"},
       {R"({"schema": 1, "options": {"tolerance": 1}})", "options.tolerance"},
       {R"({"schema": 1, "unit": "inch"})", "unit"}};
   for (const auto& [text, named] : cases) {

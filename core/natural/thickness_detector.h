@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/geometry/surface.h"
+#include "core/mesh/simplex_mesh.h"
+#include "core/metric/metric.h"
+#include "core/natural/detector.h"
+
+namespace lamella {
+
+struct NaturalParams {
+  int layers = 4;    ///< n
+  double alpha = 1;  ///< alpha_h of (4.68)
+  double h_min = 0;  ///< mm
+  double h_max = 0;  ///< mm; 0: the box diagonal
+  int threads = 0;   ///< 0: all cores; the result does not depend on it
+};
+
+/// Errors: usage (n < 1, alpha < 0, h_min > h_max).
+Result<void> check_params(const NaturalParams& params);
+
+struct NaturalField {
+  MetricField<3> metric;          ///< [node]
+  std::vector<double> thickness;  ///< [node], mm
+  std::vector<Vec<3>> direction;  ///< [node], unit, across the wall
+};
+
+/// The natural metric (chapter 4) at the nodes of a mesh. Immutable and thread-safe.
+class ThicknessDetector {
+ public:
+  virtual ~ThicknessDetector() = default;
+  /// Errors: those of `check_params`; bad_input (nothing to measure walls on), cancelled.
+  virtual Result<NaturalField> field(const SimplexMesh<3>& mesh, const NaturalParams& params,
+                                     const Progress& progress = {}) const = 0;
+  /// The same answer at any point, valid as long as the detector; empty where it needs a mesh.
+  virtual MetricFunction<3> function(const NaturalParams&) const { return {}; }
+};
+
+/// The surface is copied.
+std::unique_ptr<ThicknessDetector> make_detector(Detector kind, const ReferenceSurface<3>& surface);
+
+}  // namespace lamella
