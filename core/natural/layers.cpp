@@ -152,6 +152,43 @@ Place measure(const Mesh& mesh, const Neighbors& neighbors, const Locator<3>& su
   return place;
 }
 
+bool below(const Place& place, int asked) { return place.layers < asked - 1e-6; }
+
+/// Facets below n that share a node are one place.
+std::vector<PlaceBelow> places_below(const Mesh& mesh, const std::vector<Place>& places,
+                                     const std::vector<std::int32_t>& counted, int asked) {
+  std::vector<NodeId> parent(mesh.points.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](NodeId n) {
+    while (parent[n] != n) n = parent[n] = parent[parent[n]];
+    return n;
+  };
+  for (const auto f : counted)
+    if (below(places[f], asked))
+      for (const auto n : mesh.facets[f]) {
+        const NodeId a = root(mesh.facets[f][0]), b = root(n);
+        parent[std::max(a, b)] = std::min(a, b);
+      }
+  std::vector<std::int32_t> index(mesh.points.size(), -1);
+  std::vector<PlaceBelow> found;
+  for (const auto f : counted) {
+    if (!below(places[f], asked)) continue;
+    std::int32_t& i = index[root(mesh.facets[f][0])];
+    if (i < 0) {
+      i = static_cast<std::int32_t>(found.size());
+      found.push_back({Vec<3>::Zero(), std::numeric_limits<double>::infinity(), 0});
+    }
+    found[i].area += places[f].area;
+    if (places[f].layers >= found[i].layers) continue;
+    found[i].layers = places[f].layers;
+    const auto p = mesh.corners(mesh.facets[f]);
+    found[i].at = (p[0] + p[1] + p[2]) / 3;
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const PlaceBelow& a, const PlaceBelow& b) { return a.area > b.area; });
+  return found;
+}
+
 LayerStats statistics(const std::vector<Place>& places, const std::vector<std::int32_t>& counted,
                       int asked) {
   LayerStats stats;
@@ -165,7 +202,7 @@ LayerStats statistics(const std::vector<Place>& places, const std::vector<std::i
   for (const auto i : order) {
     total += places[i].area;
     sum += places[i].area * places[i].layers;
-    if (places[i].layers >= asked - 1e-6) reached += places[i].area;
+    if (!below(places[i], asked)) reached += places[i].area;
   }
   const auto quantile = [&](double q) {
     double below = 0;
@@ -176,6 +213,7 @@ LayerStats statistics(const std::vector<Place>& places, const std::vector<std::i
   stats.mean = sum / total;
   stats.p5 = quantile(0.05);
   stats.p50 = quantile(0.5);
+  stats.p95 = quantile(0.95);
   stats.share_reached = reached / total;
   return stats;
 }
@@ -207,6 +245,7 @@ Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface
 
   Layers layers;
   layers.stats = statistics(places, counted, asked);
+  layers.below = places_below(mesh, places, counted, asked);
   std::vector<double> weight(mesh.points.size(), 0.0);
   layers.at_node.assign(mesh.points.size(), 0.0);
   const auto give = [&](NodeId node, double value) {

@@ -8,9 +8,17 @@
 
 namespace lamella {
 
+/// A connected piece of wall with fewer layers than asked.
+struct PlaceBelow {
+  Vec<3> at = Vec<3>::Zero();  ///< mm, on the boundary, where there are fewest
+  double layers = 0;           ///< there
+  double area = 0;             ///< mm^2 of boundary
+};
+
 struct Layers {
-  std::vector<double> at_node;  ///< [node] layers of the wall around it; NaN where not measured
-  LayerStats stats;             ///< over the boundary facets' centers
+  std::vector<double> at_node;    ///< [node] layers of the wall around it; NaN where not measured
+  LayerStats stats;               ///< over the boundary facets' centers
+  std::vector<PlaceBelow> below;  ///< places with less than n, the largest first
 };
 
 /// Layers measured back: from each boundary facet's center along its inward normal to the opposite

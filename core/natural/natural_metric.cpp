@@ -8,11 +8,19 @@
 namespace lamella {
 namespace {
 
-/// Share of the division by n: 1 up to the ratio 1 + alpha, 0 from twice that, linear in log
-/// between.
-double division_share(double ratio, double alpha) {
-  const double full = 1 + alpha;
+/// 1 up to the ratio `full`, 0 from twice that, linear in log between.
+double share_up_to(double full, double ratio) {
   return std::clamp(1 - std::log(ratio / full) / std::log(2.0), 0.0, 1.0);
+}
+
+/// By what the full width along an axis is divided, (4.68) and section 4.4.3, when it is `ratio`
+/// times as long as the shortest. An axis that is not divided gets half its semi-axis.
+double divisor(const NaturalParams& p, double ratio) {
+  const double first = share_up_to(1 + p.alpha, ratio);
+  const double second = p.layers2 ? share_up_to(1 + p.alpha + p.alpha2, ratio) : 0;
+  const double n2 = p.layers2.value_or(1), n3 = p.layers3.value_or(4);
+  return std::pow(p.layers, first) *
+         std::pow(std::pow(n2, second) * std::pow(n3, 1 - second), 1 - first);
 }
 
 }  // namespace
@@ -37,11 +45,8 @@ Natural NaturalDetector::at(const Vec<3>& x, const NaturalParams& params) const 
   natural.metric.setZero();
   for (int k = 0; k < 3; ++k) {
     const double ratio = seen.length[k] / seen.length[0];
-    const double phi = division_share(ratio, params.alpha);
-    // Divided axes get the full width over n, the others half the semi-axis.
-    const double h = std::clamp(
-        natural.thickness * ratio * std::pow(1.0 / params.layers, phi) * std::pow(0.25, 1 - phi),
-        params.h_min, h_max);
+    const double h =
+        std::clamp(natural.thickness * ratio / divisor(params, ratio), params.h_min, h_max);
     natural.metric += seen.axis.col(k) * seen.axis.col(k).transpose() / (h * h);
   }
   return natural;

@@ -279,13 +279,19 @@ class Grower {
   std::vector<std::array<std::int32_t, D>> faces_;
 };
 
-/// (4.68): the sizes up to (1 + alpha) h_1 over n, the others as they are, all within the bounds.
+/// (4.68): the sizes up to (1 + alpha) h_1 over n, the others as they are or, if so asked, by n2
+/// and n3 (4.4.3), all within the bounds.
 template <int D>
 Metric<D> divided(const Spectrum<D>& s, const NaturalParams& params, double h_max) {
   Vec<D> h = s.values.unaryExpr(&size_from_eigenvalue);
-  const double limit = (1 + params.alpha) * h[D - 1];
+  const double h1 = h[D - 1];
   for (int k = 0; k < D; ++k) {
-    if (h[k] <= limit) h[k] /= params.layers;
+    if (h[k] <= (1 + params.alpha) * h1)
+      h[k] /= params.layers;
+    else if (params.layers2 && h[k] <= (1 + params.alpha + params.alpha2) * h1)
+      h[k] /= *params.layers2;
+    else
+      h[k] /= params.layers3.value_or(1);
     h[k] = std::clamp(h[k], params.h_min, h_max);
   }
   return metric_from_sizes<D>(s.vectors, h);

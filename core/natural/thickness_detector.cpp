@@ -10,7 +10,10 @@ Result<void> check_params(const NaturalParams& p) {
     return Error{Code::usage,
                  "The number of layers must be at least 1, not " + std::to_string(p.layers) + ".",
                  "Ask for 1 to 16 layers."};
-  if (!(p.alpha >= 0))
+  if (p.layers2.value_or(1) < 1 || p.layers3.value_or(1) < 1)
+    return Error{Code::usage, "The numbers of layers n2 and n3 must be at least 1.",
+                 "Leave them out for long directions that are not to be divided."};
+  if (!(p.alpha >= 0) || !(p.alpha2 >= 0))
     return Error{Code::usage, "alpha must not be negative.",
                  "0 divides the thinnest direction only; 1 is the usual value."};
   if (!(p.h_min >= 0) || !(p.h_max >= 0) || (p.h_max > 0 && p.h_min > p.h_max))

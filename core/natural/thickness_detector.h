@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
@@ -12,14 +13,18 @@
 namespace lamella {
 
 struct NaturalParams {
-  int layers = 4;    ///< n
-  double alpha = 1;  ///< alpha_h of (4.68)
-  double h_min = 0;  ///< mm
-  double h_max = 0;  ///< mm; 0: the box diagonal
-  int threads = 0;   ///< 0: all cores; the result does not depend on it
+  int layers = 4;    ///< n, or n1 of section 4.4.3
+  double alpha = 1;  ///< alpha_h of (4.68), or alpha1
+  /// n2, for sizes up to (1 + alpha1 + alpha2) h1; unset: as those beyond.
+  std::optional<int> layers2{};
+  double alpha2 = 0;
+  std::optional<int> layers3{};  ///< n3, for sizes beyond; unset: not divided
+  double h_min = 0;              ///< mm
+  double h_max = 0;              ///< mm; 0: the box diagonal
+  int threads = 0;               ///< 0: all cores; the result does not depend on it
 };
 
-/// Errors: usage (n < 1, alpha < 0, h_min > h_max).
+/// Errors: usage (n, n2 or n3 < 1, alpha or alpha2 < 0, h_min > h_max).
 Result<void> check_params(const NaturalParams& params);
 
 struct NaturalField {

@@ -70,7 +70,20 @@ TEST(Layers, QuantilesFollowTheAreaOfEachWall) {
   EXPECT_NEAR(layers->stats.p50, 2, 1e-6);
   EXPECT_GT(layers->stats.mean, 2.1);
   EXPECT_LT(layers->stats.mean, 2.6);
+  EXPECT_NEAR(layers->stats.p95, 4, 1e-6);
   EXPECT_NEAR(layers->stats.share_reached, 0.25, 0.05);
+  // Below 3: the floor and the ceiling of the thin part.
+  ASSERT_EQ(layers->below.size(), 2u);
+  double area = 0;
+  for (const PlaceBelow& place : layers->below) {
+    EXPECT_NEAR(place.layers, 2, 1e-6);
+    EXPECT_LT(place.at[0], 1.5);
+    EXPECT_NEAR(std::abs(place.at[2] - 0.1), 0.1, 1e-9);
+    area += place.area;
+  }
+  EXPECT_NEAR(area, 2 * 1.5, 0.3);
+  EXPECT_GE(layers->below[0].area, layers->below[1].area);
+  EXPECT_TRUE(measure_layers(mesh, surface, 2)->below.empty());
 }
 
 TEST(Layers, OneTetrahedronHasNoOppositeWall) {

@@ -48,6 +48,31 @@ TEST(NaturalMetric, PlatesGetTheirThicknessOverN) {
     }
 }
 
+TEST(NaturalMetric, ThicknessAndWidthGetNumbersOfLayersOfTheirOwn) {
+  // The cross section of the spiral mold of section 4.4.3: 2 x 20, long.
+  const double t = 2, w = 20;
+  const NaturalDetector detector(box_surface({200, w, t}, {40, 4, 1}));
+  NaturalParams params;
+  params.layers = 4;
+  const Vec<3> center{100, w / 2, t / 2};
+  const Vec<3> plain = sizes<3>(detector.at(center, params).metric);
+  params.layers2 = 5;
+  params.alpha2 = 10;
+  const Vec<3> two = sizes<3>(detector.at(center, params).metric);
+  params.layers3 = 10;
+  const Vec<3> three = sizes<3>(detector.at(center, params).metric);
+  EXPECT_NEAR(two[0], t / 4, 0.02 * t);
+  EXPECT_NEAR(two[1], w / 5, 0.2 * w / 5);
+  EXPECT_NEAR(two[1] / plain[1], 4.0 / 5, 1e-9) << "not divided: half the semi-axis";
+  EXPECT_NEAR(two[2], plain[2], 1e-9) << "the length is left alone";
+  EXPECT_NEAR(three[0], two[0], 1e-9);
+  EXPECT_NEAR(three[1], two[1], 1e-9);
+  EXPECT_NEAR(three[2] / two[2], 4.0 / 10, 1e-9);
+  params.layers2.reset();
+  const Vec<3> all_long = sizes<3>(detector.at(center, params).metric);
+  EXPECT_NEAR(all_long[1] / plain[1], 4.0 / 10, 1e-9) << "without n2, n3 is for all beyond alpha1";
+}
+
 TEST(NaturalMetric, WedgeFollowsItsThicknessDownToTheSmallestSize) {
   const double slope = 0.1;
   const NaturalDetector detector(prism_surface({{0, 0}, {1, 0}, {1, slope}}, 1));
