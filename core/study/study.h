@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/sizing/sizing_object.h"
+
 namespace lamella {
 
 /// What the user asked for one body. Lengths in mm.
@@ -32,9 +34,12 @@ struct Study {
   std::vector<std::string> inputs;   ///< STEP or STL files, relative to the study's folder
   std::vector<BodySettings> bodies;  ///< by part name; a part without an entry gets the defaults
   StudyOptions options;
+  std::vector<SizingObject> sizing;  ///< on top of the natural metric, in this order
 };
 
 /// The settings of the part called `name`: its entry, or the defaults of BodySettings.
 BodySettings settings_of(const Study& study, const std::string& name);
+/// The sizing objects that apply to the part called `name`.
+std::vector<SizingObject> sizing_of(const Study& study, const std::string& name);
 
 }  // namespace lamella
