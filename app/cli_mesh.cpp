@@ -5,8 +5,10 @@
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
+#include "app/cli_sizing.h"
 #include "core/mesh/validate.h"
 #include "core/study/first_mesh.h"
+#include "core/study/forecast.h"
 #include "core/study/join.h"
 #include "core/study/study_file.h"
 
@@ -52,6 +54,9 @@ Result<Request> request_of(const MeshCommand& c) {
   if (c.iterations) o.iterations = *c.iterations;
   if (c.threads) o.threads = *c.threads;
   if (c.seed) o.seed = *c.seed;
+  Result<std::vector<SizingObject>> sizing = sizing_of(c);
+  if (!sizing) return sizing.error();
+  std::move(sizing->begin(), sizing->end(), std::back_inserter(request.study.sizing));
   return request;
 }
 
@@ -122,6 +127,29 @@ void tell_end(const Outcome& outcome, const Report& report, const std::string& s
                      {"seconds", outcome.seconds}}));
 }
 
+/// The end of `mesh --forecast`.
+int tell_forecast(const std::vector<BodyForecast>& bodies, bool with_sizing, Console& console) {
+  const auto say = [&](const std::string& who, const MeshForecast& f) {
+    console.say(who + ": about " + grouped(static_cast<std::size_t>(f.nodes)) + " nodes, " +
+                grouped(static_cast<std::size_t>(f.elements)) + " elements; adaption takes about " +
+                grouped(static_cast<std::size_t>(f.memory) + 1) + " MB");
+  };
+  const auto json_of = [](const MeshForecast& f) {
+    return Json{{"nodes", f.nodes}, {"elements", f.elements}, {"memory", f.memory}};
+  };
+  for (const BodyForecast& b : bodies) {
+    say(b.name, b.mesh.natural);
+    if (with_sizing) say(b.name + ", sizes corrected", b.mesh.corrected);
+    console.emit(dump({{"phase", "forecast"},
+                       {"body", b.name},
+                       {"natural", json_of(b.mesh.natural)},
+                       {"corrected", json_of(b.mesh.corrected)},
+                       {"samples", b.mesh.samples},
+                       {"seconds", b.seconds}}));
+  }
+  return 0;
+}
+
 }  // namespace
 
 int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
@@ -163,6 +191,13 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
                        {"notes", part.notes}}));
   }
 
+  if (c.forecast) {
+    const Result<std::vector<BodyForecast>> bodies =
+        forecast_study(study, *parts, meshers_for(mesher_choice(c.mesher), study.options.seed),
+                       progress.portion(0.05, 1));
+    if (!bodies) return console.fail(bodies.error());
+    return tell_forecast(*bodies, !study.sizing.empty(), console);
+  }
   Result<Outcome> outcome =
       run(study, *parts, meshers_for(mesher_choice(c.mesher), study.options.seed),
           progress.portion(0.05, 0.95),

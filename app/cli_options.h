@@ -18,6 +18,10 @@ struct MeshCommand {
   std::optional<int> iterations, threads;
   std::optional<std::uint64_t> seed;
   std::optional<double> min_quality;
+  std::vector<std::string> size_spheres, size_boxes, size_cylinders, size_faces;
+  std::optional<double> size_gradation;
+  bool size_keep_directions = false;
+  bool forecast = false;  ///< tell it, mesh nothing
   std::string unit = "mm";
   std::string mesher = "auto";
   std::string report;
@@ -60,6 +64,7 @@ struct InfoCommand {
   std::string part;
   std::string unit = "mm";
   std::optional<double> chord_tolerance;
+  bool faces = false;
   bool json = false;
 };
 

@@ -222,6 +222,9 @@ std::string conformity_and_settings(const Report& r) {
                 short_number(b.h_min) + " mm, " +
                     (s.h_max ? short_number(*s.h_max) + " mm" : std::string("no bound")));
   }
+  for (const SizingObject& object : r.study.sizing)
+    html += row("size corrected by",
+                escaped(object.name + (object.body.empty() ? "" : ", " + object.body)));
   html += row("chord tolerance", o.chord_tolerance ? short_number(*o.chord_tolerance) + " mm"
                                                    : "1/1000 of each body's diagonal");
   html += row("angle tolerance", short_number(o.angle_tolerance) + " rad");
