@@ -28,7 +28,8 @@ struct ForecastParams {
 
 /// Integrates sqrt(det M) over the elements and boundary facets of `mesh`, which are divided where
 /// the metric changes: (1.34) without the error of the coarse mesh. The boundary counts because
-/// its nodes have elements on one side only; in thin walls that is a large share.
+/// its nodes have elements on one side only; in thin walls that is a large share. Not counted are
+/// nodes that curved boundaries need beyond the metric.
 /// Errors: bad_input (no element, or a metric that is not positive definite), cancelled.
 Result<SizingForecast> forecast_mesh(const SimplexMesh<3>& mesh, const MetricFunction<3>& natural,
                                      const SizingField& sizing, const ForecastParams& params = {},

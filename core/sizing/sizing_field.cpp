@@ -307,9 +307,11 @@ class Reader {
     want(positive(z.sizes), "a size of the zone is not positive.", "Give three sizes in mm.");
     out.sizes = z.sizes;
     out.replace = z.replace;
+    const RadialProgression& g = z.progression;
+    const bool progresses = g.kind != RadialProgression::Kind::none;
     std::visit(Overloaded{[&](const CartesianFrame& f) {
                             out.constant = metric_from_sizes<3>(axes(f.x_axis, f.y_axis), z.sizes);
-                            want(!z.progression,
+                            want(!progresses,
                                  "sizes that change with the radius need one, and a Cartesian "
                                  "frame has none.",
                                  "Use a cylindrical or a spherical frame.");
@@ -326,14 +328,14 @@ class Reader {
                           }},
                z.frame);
     want(out.origin.allFinite(), "the origin of its frame is not a place.", "Give numbers in mm.");
-    if (const auto& g = z.progression) {
-      want(g->from >= 0 && g->to > g->from && std::isfinite(g->to),
+    if (progresses) {
+      want(g.from >= 0 && g.to > g.from && std::isfinite(g.to),
            "the radii between which sizes change must grow.", "0 <= from < to, in mm.");
-      want(positive(g->sizes), "a size of the zone is not positive.", "Give three sizes in mm.");
-      out.last_sizes = g->sizes;
-      out.from = g->from;
-      out.to = g->to;
-      out.geometric = g->geometric;
+      want(positive(g.sizes), "a size of the zone is not positive.", "Give three sizes in mm.");
+      out.last_sizes = g.sizes;
+      out.from = g.from;
+      out.to = g.to;
+      out.geometric = g.kind == RadialProgression::Kind::geometric;
     }
     return out;
   }

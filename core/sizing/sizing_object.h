@@ -69,18 +69,18 @@ struct SphericalFrame {
 /// Sizes that change with the radius r of the frame, (A.16) and (A.20) with h(r): those of the zone
 /// up to `from`, `sizes` from `to` on, linear or geometric in r between.
 struct RadialProgression {
+  enum class Kind { none, linear, geometric } kind = Kind::none;
   double from = 0, to = 0;  ///< mm, 0 <= from < to
   Vec<3> sizes = Vec<3>::Zero();
-  bool geometric = false;
 };
 
 /// Analytic zone (A.1.4): sizes (mm) along x, y, z; along r, theta, z; or along r, theta, phi of
 /// the frame. It ends where its shape ends.
 struct AnalyticZone {
   std::variant<CartesianFrame, CylindricalFrame, SphericalFrame> frame;
-  Vec<3> sizes = Vec<3>::Zero();                   ///< > 0
-  std::optional<RadialProgression> progression{};  ///< not for a Cartesian frame
-  bool replace = false;  ///< instead of the natural metric; else intersected with it
+  Vec<3> sizes = Vec<3>::Zero();    ///< > 0
+  RadialProgression progression{};  ///< none for a Cartesian frame
+  bool replace = false;             ///< instead of the natural metric; else intersected with it
 };
 
 /// What the user asks of the mesh size somewhere, on top of the natural metric.

@@ -232,9 +232,10 @@ AnalyticZone read_zone(const Json& json, const std::string& path, std::string& c
   }
   m.lengths("sizes", zone.sizes);
   if (m.has("progression")) {
-    RadialProgression& p = zone.progression.emplace();
+    RadialProgression& p = zone.progression;
     Members g(m.at("progression"), path + ".progression", complaint);
-    p.geometric = g.choice("kind", kProgressions) == 1;
+    p.kind = g.choice("kind", kProgressions) == 1 ? RadialProgression::Kind::geometric
+                                                  : RadialProgression::Kind::linear;
     g.number("from", p.from, true);
     if (!g.has("to")) g.complain("to", "is needed");
     g.number("to", p.to, false);
@@ -314,11 +315,13 @@ Json json_of(const AnalyticZone& zone) {
     if (const auto* s = std::get_if<SphericalFrame>(&zone.frame)) round(*s);
   }
   json["sizes"] = json_of(zone.sizes);
-  if (const auto& p = zone.progression)
-    json["progression"] = {{"kind", kProgressions.at(p->geometric ? 1 : 0)},
-                           {"from", p->from},
-                           {"to", p->to},
-                           {"sizes", json_of(p->sizes)}};
+  const RadialProgression& p = zone.progression;
+  if (p.kind != RadialProgression::Kind::none)
+    json["progression"] = {
+        {"kind", kProgressions.at(p.kind == RadialProgression::Kind::geometric ? 1 : 0)},
+        {"from", p.from},
+        {"to", p.to},
+        {"sizes", json_of(p.sizes)}};
   json["replace"] = zone.replace;
   return json;
 }

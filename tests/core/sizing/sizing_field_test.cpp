@@ -268,7 +268,7 @@ TEST(SizingField, SizesProgressWithTheRadius) {
   p.sizes = {0.4, 4, 0.5};
   for (const bool round : {false, true})
     for (const bool geometric : {false, true}) {
-      p.geometric = geometric;
+      p.kind = geometric ? RadialProgression::Kind::geometric : RadialProgression::Kind::linear;
       zone.progression = p;
       if (round)
         zone.frame = SphericalFrame{};
@@ -379,16 +379,16 @@ TEST(SizingField, WhatMakesNoSenseIsRefusedByName) {
         })},
        "axis"},
       {{"o", "", sphere, zone_with([](auto& z) {
-          z.progression = {2, 1, {1, 1, 1}};
+          z.progression = {RadialProgression::Kind::linear, 2, 1, {1, 1, 1}};
         })},
        "radii"},
       {{"o", "", sphere, zone_with([](auto& z) {
-          z.progression = {0, 1, {1, 0, 1}};
+          z.progression = {RadialProgression::Kind::linear, 0, 1, {1, 0, 1}};
         })},
        "not positive"},
       {{"o", "", sphere, zone_with([](auto& z) {
           z.frame = CartesianFrame{};
-          z.progression = {0, 1, {1, 1, 1}};
+          z.progression = {RadialProgression::Kind::linear, 0, 1, {1, 1, 1}};
         })},
        "Cartesian"}};
   for (const auto& [object, named] : bad) {

@@ -58,10 +58,10 @@ Study sized_study() {
   flat.frame = CartesianFrame{{0, 1, 0}, {0, 0, 1}};
   flat.sizes = tube.sizes = ball.sizes = {0.1, 0.2, 0.4};
   tube.frame = CylindricalFrame{{1, 0, 0}, {1, 1, 0}};
-  tube.progression = {0.5, 3, {1, 2, 3}, true};
+  tube.progression = {RadialProgression::Kind::geometric, 0.5, 3, {1, 2, 3}};
   tube.replace = true;
   ball.frame = SphericalFrame{{0, 7, 0}, {1, 0, 0}};
-  ball.progression = {0, 2, {1, 2, 3}, false};
+  ball.progression = {RadialProgression::Kind::linear, 0, 2, {1, 2, 3}};
   study.sizing = {{"gate", "cover", SphereShape{{0.1, -2, 1e-7}, 0.5}, size},
                   {"all", "", WholeBody{}, factor},
                   {"plate", "", box, flat},
@@ -87,8 +87,8 @@ TEST(StudyFile, SizingObjectsReadBackAsWritten) {
   const auto& tube = std::get<AnalyticZone>(back->sizing[3].asks);
   EXPECT_EQ(std::get<CylindricalFrame>(tube.frame).axis, Vec<3>(1, 1, 0));
   EXPECT_TRUE(tube.replace);
-  EXPECT_TRUE(tube.progression.value().geometric);
-  EXPECT_EQ(tube.progression->sizes, Vec<3>(1, 2, 3));
+  EXPECT_EQ(tube.progression.kind, RadialProgression::Kind::geometric);
+  EXPECT_EQ(tube.progression.sizes, Vec<3>(1, 2, 3));
   const auto& faces = std::get<FacesShape>(back->sizing[4].shape);
   EXPECT_EQ(faces.ids, (std::vector<std::int32_t>{3, 0}));
   EXPECT_EQ(faces.names, std::vector<std::string>{"gate \"1\""});
