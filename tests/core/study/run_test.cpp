@@ -6,6 +6,7 @@
 #include "core/mesh/sample_meshes.h"
 #include "core/mesh/validate.h"
 #include "core/study/measure.h"
+#include "core/study/request.h"
 
 namespace lamella {
 namespace {
@@ -70,6 +71,8 @@ TEST(Run, AGateIsRefinedAndTheThicknessStays) {
   const Result<Outcome> outcome = run(study, {plate("plate")}, real());
   ASSERT_TRUE(outcome.ok()) << outcome.error().message;
   const MeshState& state = *outcome->state;
+  const NaturalDetector detector(plate("plate").surface);
+  const NaturalParams natural = natural_params(study, plate("plate"));
   double sum = 0;
   int edges = 0;
   for (const auto& e : state.mesh.elements) {
@@ -85,9 +88,7 @@ TEST(Run, AGateIsRefinedAndTheThicknessStays) {
     if ((x - gate).norm() < 0.79) {
       EXPECT_NEAR(sizes<3>(state.metric[n])[2], 0.15, 1e-9);
     }
-    if ((x.head<2>() - gate.head<2>()).norm() < 2) {
-      EXPECT_NEAR(state.thickness[n], 1, 1e-3);
-    }
+    EXPECT_EQ(state.thickness[n], detector.at(x, natural).thickness);
   }
 }
 
