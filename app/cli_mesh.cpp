@@ -5,8 +5,10 @@
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
+#include "app/cli_sizing.h"
 #include "core/mesh/validate.h"
 #include "core/study/first_mesh.h"
+#include "core/study/forecast.h"
 #include "core/study/join.h"
 #include "core/study/study_file.h"
 
@@ -52,7 +54,11 @@ Result<Request> request_of(const MeshCommand& c) {
   if (c.iterations) o.iterations = *c.iterations;
   if (c.threads) o.threads = *c.threads;
   if (c.seed) o.seed = *c.seed;
+  if (c.progressive) o.progressive = true;
   if (c.detector) o.detector = detector_from_name(*c.detector).value_or(o.detector);
+  Result<std::vector<SizingObject>> sizing = sizing_of(c);
+  if (!sizing) return sizing.error();
+  std::move(sizing->begin(), sizing->end(), std::back_inserter(request.study.sizing));
   return request;
 }
 
@@ -63,6 +69,9 @@ void apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study
     BodySettings body = settings_of(study, part.name);
     if (c.layers) body.layers = *c.layers;
     if (c.alpha) body.alpha = *c.alpha;
+    if (c.layers2) body.layers2 = c.layers2;
+    if (c.alpha2) body.alpha2 = *c.alpha2;
+    if (c.layers3) body.layers3 = c.layers3;
     if (c.h_min) body.h_min = c.h_min;
     if (c.h_max) body.h_max = c.h_max;
     bodies.push_back(std::move(body));
@@ -127,6 +136,29 @@ void tell_end(const Outcome& outcome, const Report& report, const std::string& s
                      {"seconds", outcome.seconds}}));
 }
 
+/// The end of `mesh --forecast`.
+int tell_forecast(const std::vector<BodyForecast>& bodies, bool with_sizing, Console& console) {
+  const auto say = [&](const std::string& who, const MeshForecast& f) {
+    console.say(who + ": about " + grouped(static_cast<std::size_t>(f.nodes)) + " nodes, " +
+                grouped(static_cast<std::size_t>(f.elements)) + " elements; adaption takes about " +
+                grouped(static_cast<std::size_t>(f.memory) + 1) + " MB");
+  };
+  const auto json_of = [](const MeshForecast& f) {
+    return Json{{"nodes", f.nodes}, {"elements", f.elements}, {"memory", f.memory}};
+  };
+  for (const BodyForecast& b : bodies) {
+    say(b.name, b.mesh.natural);
+    if (with_sizing) say(b.name + ", sizes corrected", b.mesh.corrected);
+    console.emit(dump({{"phase", "forecast"},
+                       {"body", b.name},
+                       {"natural", json_of(b.mesh.natural)},
+                       {"corrected", json_of(b.mesh.corrected)},
+                       {"samples", b.mesh.samples},
+                       {"seconds", b.seconds}}));
+  }
+  return 0;
+}
+
 }  // namespace
 
 int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
@@ -168,6 +200,13 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
                        {"notes", part.notes}}));
   }
 
+  if (c.forecast) {
+    const Result<std::vector<BodyForecast>> bodies =
+        forecast_study(study, *parts, meshers_for(mesher_choice(c.mesher), study.options.seed),
+                       progress.portion(0.05, 1));
+    if (!bodies) return console.fail(bodies.error());
+    return tell_forecast(*bodies, !study.sizing.empty(), console);
+  }
   Result<Outcome> outcome =
       run(study, *parts, meshers_for(mesher_choice(c.mesher), study.options.seed),
           progress.portion(0.05, 0.95),

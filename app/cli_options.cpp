@@ -21,6 +21,7 @@ Lengths are in mm, angles in radians. Exit status: 0 done, 1 error, 2 usage, 3 b
 Examples:
   lamella-cli sample t_junction -o t.step
   lamella-cli mesh t.step -n 4 -o t.msh -o t.vtu
+  lamella-cli mesh t.step --size-sphere 0,0,0,2,0.3 --forecast
   lamella-cli check t.msh --layers 4
   lamella-cli adapt cube.mesh --metric polar-2 --iterations 5 -o adapted.mesh
   lamella-cli box --dimension 4 --cells 4,4,4,8 --high 1,1,1,2 -o spacetime.mesh
@@ -149,6 +150,28 @@ void add_adapt(CLI::App* a, AdaptCommand& adapt) {
   add_json(a, adapt.json);
 }
 
+void add_sizing(CLI::App* m, MeshCommand& mesh) {
+  const auto add = [m](const char* name, std::vector<std::string>& texts, const char* form,
+                       const char* what) {
+    m->add_option(name, texts, what)->option_text(form)->allow_extra_args(false);
+  };
+  add("--size-sphere", mesh.size_spheres, "X,Y,Z,R,SIZE",
+      "Size in a sphere: center, radius, and the size in mm or, as 0.3x, times the natural one; "
+      "may be repeated, as the next three");
+  add("--size-box", mesh.size_boxes, "X,Y,Z,X,Y,Z,SIZE", "Size in a box between two corners");
+  add("--size-cylinder", mesh.size_cylinders, "X,Y,Z,X,Y,Z,R,SIZE",
+      "Size in a cylinder: centers of its ends, radius");
+  add("--size-face", mesh.size_faces, "BODY:FACE,SIZE",
+      "Size on a face, by number or name (info --faces lists them)");
+  m->add_option("--size-gradation", mesh.size_gradation,
+                "Growth of sizes per unit length around them, above 1 [1.3]")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+  m->add_flag("--size-keep-directions", mesh.size_keep_directions,
+              "Scale the natural metric there, its smallest size to SIZE, instead of making it "
+              "isotropic");
+}
+
 }  // namespace
 
 double unit_factor(const std::string& unit) { return kUnits.at(unit); }
@@ -175,8 +198,9 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   m->add_option("-o,--output", mesh.outputs,
                 "File to write: .msh (Gmsh 4.1), .vtu, .mesh (Medit) or .stl; may be repeated")
       ->option_text("FILE")
-      ->required()
       ->allow_extra_args(false);
+  m->add_flag("--forecast", mesh.forecast,
+              "Tell the nodes and the memory to expect, and mesh nothing; needs no -o");
   m->add_option("-n,--layers", mesh.layers, "Elements through the thickness of each wall [4]")
       ->option_text("N")
       ->check(CLI::Range(1, 1000));
@@ -184,6 +208,19 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
                 "Sizes up to (1 + alpha) times the smallest are divided by n too [1]")
       ->option_text("X")
       ->check(CLI::NonNegativeNumber);
+  m->add_option("--layers2", mesh.layers2,
+                "Elements through the width of walls: of sizes up to (1 + alpha + alpha2) times "
+                "the smallest; needs --alpha2")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1000));
+  m->add_option("--alpha2", mesh.alpha2, "See --layers2")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+  m->add_option("--layers3", mesh.layers3, "Elements along all longer directions [not divided]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1000));
+  m->add_flag("--progressive", mesh.progressive,
+              "Ask for 2, 3, .. n layers in the first iterations, which lowers the peak of memory");
   m->add_option("--h-min", mesh.h_min, "Smallest size, mm [1/1000 of the body's diagonal]")
       ->option_text("X")
       ->check(CLI::PositiveNumber);
@@ -206,6 +243,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   m->add_option("--min-quality", mesh.min_quality, "End with status 5 when an element is worse")
       ->option_text("X")
       ->check(CLI::Range(0.0, 1.0));
+  add_sizing(m, mesh);
   add_unit(m, mesh.unit);
   add_mesher(m, mesh.mesher);
   m->add_option("--detector", mesh.detector,
@@ -256,6 +294,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   CLI::App* i = app.add_subcommand("info", "Bodies, size and volume of a part");
   i->add_option("PART", info.part, "STEP or STL file")->option_text(" ")->required();
   add_chord(i, info.chord_tolerance);
+  i->add_flag("--faces", info.faces, "List the faces: number, name, area and a point on them");
   add_unit(i, info.unit);
   add_json(i, info.json);
 
@@ -313,7 +352,14 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
     status = app.exit(error) == 0 ? 0 : exit_code(Code::usage);
     return std::nullopt;
   }
-  if (m->parsed()) return mesh;
+  if (m->parsed()) {
+    if (mesh.forecast == !mesh.outputs.empty()) {
+      std::cerr << "lamella-cli: mesh needs either --output or --forecast.\n";
+      status = exit_code(Code::usage);
+      return std::nullopt;
+    }
+    return mesh;
+  }
   if (a->parsed()) {
     if (adapt.sol.empty() && adapt.metric.empty()) {
       std::cerr << "lamella-cli: adapt needs --sol or --metric.\n";

@@ -13,11 +13,16 @@ namespace lamella::cli {
 struct MeshCommand {
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
-  std::optional<int> layers;
-  std::optional<double> alpha, h_min, h_max, chord_tolerance, angle_tolerance;
+  std::optional<int> layers, layers2, layers3;
+  std::optional<double> alpha, alpha2, h_min, h_max, chord_tolerance, angle_tolerance;
   std::optional<int> iterations, threads;
   std::optional<std::uint64_t> seed;
   std::optional<double> min_quality;
+  std::vector<std::string> size_spheres, size_boxes, size_cylinders, size_faces;
+  std::optional<double> size_gradation;
+  bool size_keep_directions = false;
+  bool forecast = false;  ///< tell it, mesh nothing
+  bool progressive = false;
   std::string unit = "mm";
   std::string mesher = "auto";
   std::optional<std::string> detector;
@@ -61,6 +66,7 @@ struct InfoCommand {
   std::string part;
   std::string unit = "mm";
   std::optional<double> chord_tolerance;
+  bool faces = false;
   bool json = false;
 };
 

@@ -113,6 +113,43 @@ int check_mesh(const SimplexMesh<D>& mesh, MetricField<D> metric, const CheckCom
   return 0;
 }
 
+/// One line a face: what --size-face and sizing objects pick it by.
+void say_faces(const Part& part, Console& console) {
+  const ReferenceSurface<3>& s = part.surface;
+  struct Found {
+    double area = 0, largest = -1;
+    Vec<3> point = Vec<3>::Zero();
+    std::size_t triangles = 0;
+  };
+  std::vector<Found> faces(s.faces.size());
+  for (std::size_t f = 0; f < s.facets.size(); ++f) {
+    const std::array<Vec<3>, 3> p = {s.points[s.facets[f][0]], s.points[s.facets[f][1]],
+                                     s.points[s.facets[f][2]]};
+    const double area = 0.5 * facet_normal<3>(p).norm();
+    Found& face = faces[s.facet_face[f]];
+    face.area += area;
+    ++face.triangles;
+    if (area <= face.largest) continue;
+    face.largest = area;
+    face.point = (p[0] + p[1] + p[2]) / 3;
+  }
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const Found& face = faces[f];
+    const std::string& name = s.faces[f].name;
+    console.say("  face " + std::to_string(f) + (name.empty() ? "" : " \"" + name + "\"") + ": " +
+                short_number(face.area, 6) + " mm2, through (" + short_number(face.point[0], 5) +
+                ", " + short_number(face.point[1], 5) + ", " + short_number(face.point[2], 5) +
+                ")");
+    console.emit(dump({{"phase", "face"},
+                       {"body", part.name},
+                       {"id", f},
+                       {"name", name},
+                       {"area", face.area},
+                       {"triangles", face.triangles},
+                       {"point", {face.point[0], face.point[1], face.point[2]}}}));
+  }
+}
+
 /// "t-junction" and "tray" find "t_junction" and "ribbed_tray".
 std::string sample_called(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
@@ -180,6 +217,7 @@ int run_info(const InfoCommand& c, Console& console) {
                        {"feature_edges", part.surface.feature_edges.size()},
                        {"chord_error", part.chord_error},
                        {"notes", part.notes}}));
+    if (c.faces) say_faces(part, console);
   }
   return 0;
 }

@@ -227,32 +227,39 @@ MetricFunction<2> polar_metric(const Vec<2>& origin, double h_r, double h_theta)
   };
 }
 
+Metric<3> cylindrical_metric_at(const Vec<3>& d, const Vec<3>& axis, const Vec<3>& h) {
+  const Vec<3> across = d - axis * axis.dot(d);
+  const double r = across.norm();
+  if (!(r > 0))
+    return along<3>(axis, h[2]) +
+           eigenvalue_from_size(h[0]) * (Mat<3>::Identity() - axis * axis.transpose());
+  const Vec<3> e_r = across / r;
+  return along<3>(e_r, h[0]) + along<3>(axis.cross(e_r), h[1]) + along<3>(axis, h[2]);
+}
+
+Metric<3> spherical_metric_at(const Vec<3>& d, const Vec<3>& axis, const Vec<3>& h) {
+  const double r = d.norm();
+  if (!(r > 0)) return isotropic_metric<3>(h[0]);
+  const Vec<3> e_r = d / r, around = axis.cross(d);
+  const double ground = around.norm();
+  if (!(ground > 0))
+    return along<3>(e_r, h[0]) +
+           eigenvalue_from_size(h[2]) * (Mat<3>::Identity() - e_r * e_r.transpose());
+  // The printed (A.22) divides the third column by ground^2; the unit vector is e_r x e_theta.
+  const Vec<3> e_theta = around / ground;
+  return along<3>(e_r, h[0]) + along<3>(e_theta, h[1]) + along<3>(e_r.cross(e_theta), h[2]);
+}
+
 MetricFunction<3> cylindrical_metric(const Vec<3>& origin, const Vec<3>& axis, double h_r,
                                      double h_theta, double h_z) {
   return [=, w = axis.normalized().eval()](const Vec<3>& x) -> Metric<3> {
-    const Vec<3> d = x - origin;
-    const Vec<3> across = d - w * w.dot(d);
-    const double r = across.norm();
-    if (!(r > 0))
-      return along<3>(w, h_z) +
-             eigenvalue_from_size(h_r) * (Mat<3>::Identity() - w * w.transpose());
-    const Vec<3> e_r = across / r;
-    return along<3>(e_r, h_r) + along<3>(w.cross(e_r), h_theta) + along<3>(w, h_z);
+    return cylindrical_metric_at(x - origin, w, {h_r, h_theta, h_z});
   };
 }
 
 MetricFunction<3> spherical_metric(const Vec<3>& origin, double h_r, double h_theta, double h_phi) {
   return [=](const Vec<3>& x) -> Metric<3> {
-    const Vec<3> d = x - origin;
-    const double r = d.norm(), ground = std::hypot(d[0], d[1]);
-    if (!(r > 0)) return isotropic_metric<3>(h_r);
-    const Vec<3> e_r = d / r;
-    if (!(ground > 0))
-      return along<3>(e_r, h_r) +
-             eigenvalue_from_size(h_phi) * (Mat<3>::Identity() - e_r * e_r.transpose());
-    // The printed (A.22) divides the third column by ground^2; the unit vector is e_r x e_theta.
-    const Vec<3> e_theta(-d[1] / ground, d[0] / ground, 0);
-    return along<3>(e_r, h_r) + along<3>(e_theta, h_theta) + along<3>(e_r.cross(e_theta), h_phi);
+    return spherical_metric_at(x - origin, Vec<3>::UnitZ(), {h_r, h_theta, h_phi});
   };
 }
 

@@ -27,6 +27,12 @@ MetricFunction<3> cylindrical_metric(const Vec<3>& origin, const Vec<3>& axis, d
 /// the origin h_r in all.
 MetricFunction<3> spherical_metric(const Vec<3>& origin, double h_r, double h_theta, double h_phi);
 
+/// The same two at one place d = x - origin (mm), where sizes depend on it: h (mm) along the
+/// radius, the longitude, and the axis or the latitude. `axis` is a unit vector, that of the
+/// cylinder or of the poles.
+Metric<3> cylindrical_metric_at(const Vec<3>& d, const Vec<3>& axis, const Vec<3>& h);
+Metric<3> spherical_metric_at(const Vec<3>& d, const Vec<3>& axis, const Vec<3>& h);
+
 /// A benchmark metric from a specification "NAME" or "NAME:key=value,key=value", lengths in mm:
 /// - uniform: h = 0.1
 /// - constaniso: hx, hy, hz = 0.1 along the axes

@@ -30,7 +30,7 @@ struct Layers {
 /// height of the regular tetrahedron, sqrt(2/3) of its edge, give 0.816 n.
 ///
 /// A place counts where the wall is thin: the far wall is parallel within 35 degrees, and the
-/// segment is no longer than 1.3 times the thickness of `surface` there (the medial ball). When no
+/// segment is no longer than 1.15 times the thickness of `surface` there (the medial ball). When no
 /// place is thin, all that have an opposite wall count; when none has, `places` is 0. Statistics
 /// are weighted by the facets' areas. Each place passes its value on to the nodes of its facet and
 /// of the elements it crosses; a node keeps the mean. Errors: usage (asked < 1), bad_input (empty

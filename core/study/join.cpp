@@ -38,6 +38,7 @@ std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodie
     append(joined->thickness, body.thickness, 1);
     append(joined->layers, body.layers, 1);
     append(joined->quality, body.quality, 0);
+    append(joined->below, body.below, 0);
   }
   return joined;
 }
@@ -59,6 +60,7 @@ IterationRecord join(const std::vector<const IterationRecord*>& records) {
     all.conformity += e * r->conformity;
     all.unit_edges += e * r->unit_edges;
     all.seconds += r->seconds;
+    all.layers_by_nodes += static_cast<double>(r->nodes) * r->layers_by_nodes;
     elements += e;
     if (r->layers.places == 0) continue;
     all.layers.places += r->layers.places;
@@ -66,9 +68,11 @@ IterationRecord join(const std::vector<const IterationRecord*>& records) {
     all.layers.share_reached += p * r->layers.share_reached;
     all.layers.p5 = first ? r->layers.p5 : std::min(all.layers.p5, r->layers.p5);
     all.layers.p50 = first ? r->layers.p50 : std::min(all.layers.p50, r->layers.p50);
+    all.layers.p95 = std::max(all.layers.p95, r->layers.p95);
     places += p;
     first = false;
   }
+  if (all.nodes > 0) all.layers_by_nodes /= static_cast<double>(all.nodes);
   for (double* mean : {&all.quality_mean, &all.conformity, &all.unit_edges})
     *mean = elements > 0 ? *mean / elements : 0;
   for (double* mean : {&all.layers.mean, &all.layers.share_reached})

@@ -13,7 +13,7 @@ std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodie
 
 /// The record of all bodies together, of one record each: sums, means weighted by elements, the
 /// worst quality; of the layers the mean weighted by places, and the smallest 5 % quantile and
-/// median.
+/// median, and the largest 95 % quantile.
 IterationRecord join(const std::vector<const IterationRecord*>& records);
 
 }  // namespace lamella

@@ -12,12 +12,13 @@ struct IterationRecord {
   int iteration = 0;
   std::size_t nodes = 0;
   std::size_t elements = 0;
-  double volume = 0;           ///< mm^3
-  double quality_min = 0;      ///< worst c(T), eq. (3.7), in the metric asked
+  double volume = 0;       ///< mm^3
+  double quality_min = 0;  ///< worst c(T), eq. (3.7), in the metric asked
   double quality_mean = 0;
-  double conformity = 0;       ///< mean of sqrt(trace(R R)), invariant form of (1.33)
-  double unit_edges = 0;       ///< share of edges with length in [1/sqrt 2, sqrt 2]
+  double conformity = 0;  ///< mean of sqrt(trace(R R)), invariant form of (1.33)
+  double unit_edges = 0;  ///< share of edges with length in [1/sqrt 2, sqrt 2]
   LayerStats layers;
+  double layers_by_nodes = 0;  ///< (B.2), as the thesis counts them
   double seconds = 0;          ///< wall time of this iteration
 };
 

@@ -22,16 +22,23 @@ Json layers_json(const LayerStats& layers) {
   return {{"mean", layers.mean},
           {"p5", layers.p5},
           {"median", layers.p50},
+          {"p95", layers.p95},
           {"share_reached", layers.share_reached},
           {"places", layers.places}};
 }
 
 Json iteration_json(const IterationRecord& r) {
-  return {{"iteration", r.iteration},        {"nodes", r.nodes},
-          {"elements", r.elements},          {"volume", r.volume},
-          {"quality_min", r.quality_min},    {"quality_mean", r.quality_mean},
-          {"conformity", r.conformity},      {"unit_edges", r.unit_edges},
-          {"layers", layers_json(r.layers)}, {"seconds", r.seconds}};
+  return {{"iteration", r.iteration},
+          {"nodes", r.nodes},
+          {"elements", r.elements},
+          {"volume", r.volume},
+          {"quality_min", r.quality_min},
+          {"quality_mean", r.quality_mean},
+          {"conformity", r.conformity},
+          {"unit_edges", r.unit_edges},
+          {"layers", layers_json(r.layers)},
+          {"layers_by_nodes", r.layers_by_nodes},
+          {"seconds", r.seconds}};
 }
 
 Json inputs_json(const std::vector<InputFile>& inputs) {
@@ -49,6 +56,14 @@ Json farthest_json(const FarthestPoint& p) {
   return {{"distance", p.distance}, {"place", {p.place[0], p.place[1], p.place[2]}}};
 }
 
+Json below_json(const std::vector<PlaceBelow>& places) {
+  Json list = Json::array();
+  for (const PlaceBelow& p : places)
+    list.push_back(
+        {{"place", {p.at[0], p.at[1], p.at[2]}}, {"layers", p.layers}, {"area", p.area}});
+  return list;
+}
+
 Json body_json(const BodyOutcome& body) {
   Json records = Json::array();
   for (const IterationRecord& r : body.records) records.push_back(iteration_json(r));
@@ -63,6 +78,7 @@ Json body_json(const BodyOutcome& body) {
           {"chord_tolerance", body.chord_tolerance},
           {"h_min", body.h_min},
           {"layers", layers_json(body.layers)},
+          {"below", below_json(body.below)},
           {"notes", body.notes},
           {"records", std::move(records)}};
 }
@@ -186,6 +202,9 @@ Result<void> write_sidecar(const Study& study, const SimplexMesh<3>& mesh,
     const BodySettings settings = settings_of(study, mesh.bodies[b]);
     body["layers"] = settings.layers;
     body["alpha"] = settings.alpha;
+    if (settings.layers2) body["layers2"] = *settings.layers2;
+    if (settings.layers2) body["alpha2"] = settings.alpha2;
+    if (settings.layers3) body["layers3"] = *settings.layers3;
     if (settings.h_min) body["h_min"] = *settings.h_min;
     json["bodies"].push_back(std::move(body));
   }

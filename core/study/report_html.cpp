@@ -152,19 +152,42 @@ std::string tiles(const Report& r) {
 std::string bodies_table(const Report& r) {
   std::string html =
       "<h2>Bodies</h2><table><tr><th>body</th><th>n</th><th>layers mean</th><th>5 %</th>"
-      "<th>median</th><th>&ge; n</th><th>CAD volume mm&sup3;</th><th>mesh</th>"
+      "<th>median</th><th>95 %</th><th>&ge; n</th><th>CAD volume mm&sup3;</th><th>mesh</th>"
       "<th>boundary to part mm</th><th>part to boundary</th><th>tolerance</th><th>h "
       "min</th><th>first mesh by</th></tr>";
   for (const BodyOutcome& b : r.outcome.bodies)
     html += "<tr>" + cell(escaped(b.name), true) + cell(std::to_string(b.layers_asked)) +
             cell(layers_text(b.layers, b.layers.mean)) + cell(layers_text(b.layers, b.layers.p5)) +
-            cell(layers_text(b.layers, b.layers.p50)) +
+            cell(layers_text(b.layers, b.layers.p50)) + cell(layers_text(b.layers, b.layers.p95)) +
             cell(b.layers.places ? percent(b.layers.share_reached) : "-") +
             cell(short_number(b.cad_volume, 6)) + cell(difference(b.mesh_volume, b.cad_volume)) +
             far_cell(b.boundary_distance.to_surface) + far_cell(b.boundary_distance.from_surface) +
             cell(short_number(b.chord_tolerance, 3)) + cell(short_number(b.h_min, 3)) +
             cell(escaped(b.first_mesh_by)) + "</tr>";
   return html + "</table>";
+}
+
+/// The places below n that matter most.
+std::string below_table(const Report& r) {
+  constexpr std::size_t most = 10;
+  std::string html;
+  for (const BodyOutcome& b : r.outcome.bodies) {
+    if (b.below.empty()) continue;
+    html += "<h2>" + escaped(b.name) + ": places below n = " + std::to_string(b.layers_asked) +
+            "</h2><table><tr><th>layers</th><th>area mm&sup2;</th><th>x mm</th><th>y</th>"
+            "<th>z</th></tr>";
+    for (std::size_t i = 0; i < std::min(most, b.below.size()); ++i) {
+      const PlaceBelow& p = b.below[i];
+      html += "<tr>" + cell(fixed(p.layers, 2)) + cell(short_number(p.area, 3)) +
+              cell(short_number(p.at[0], 5)) + cell(short_number(p.at[1], 5)) +
+              cell(short_number(p.at[2], 5)) + "</tr>";
+    }
+    html += "</table>";
+    if (b.below.size() > most)
+      html += "<p>The largest " + std::to_string(most) + " of " + grouped(b.below.size()) +
+              "; all are in the JSON report.</p>";
+  }
+  return html;
 }
 
 std::string plots(const Report& r) {
@@ -226,14 +249,22 @@ std::string conformity_and_settings(const Report& r) {
   for (const BodyOutcome& b : r.outcome.bodies) {
     const BodySettings s = settings_of(r.study, b.name);
     html += row(b.name + ": n, alpha", std::to_string(s.layers) + ", " + short_number(s.alpha));
+    if (s.layers2)
+      html +=
+          row(b.name + ": n2, alpha2", std::to_string(*s.layers2) + ", " + short_number(s.alpha2));
+    if (s.layers3) html += row(b.name + ": n3", std::to_string(*s.layers3));
     html += row(b.name + ": h min, h max",
                 short_number(b.h_min) + " mm, " +
                     (s.h_max ? short_number(*s.h_max) + " mm" : std::string("no bound")));
   }
+  for (const SizingObject& object : r.study.sizing)
+    html += row("size corrected by",
+                escaped(object.name + (object.body.empty() ? "" : ", " + object.body)));
   html += row("chord tolerance", o.chord_tolerance ? short_number(*o.chord_tolerance) + " mm"
                                                    : "1/1000 of each body's diagonal");
   html += row("angle tolerance", short_number(o.angle_tolerance) + " rad");
-  html += row("iterations at most", std::to_string(o.iterations));
+  html += row("iterations at most",
+              std::to_string(o.iterations) + (o.progressive ? ", with 2, 3, .. n layers" : ""));
   html += row("threads", o.threads ? std::to_string(o.threads) : "all cores");
   html += row("seed", std::to_string(o.seed));
   html += row("detector", std::string(detector_name(o.detector)));
@@ -282,8 +313,8 @@ std::string report_html(const Report& report) {
          escaped(report.study.name) + " - mesh report</title><style>" + kStyle +
          "</style></head>\n<body><main><header><h1>" + escaped(report.study.name) +
          "</h1><span>Mesh report &middot; Lamella " + version() + "</span></header>\n" +
-         verdict(report) + tiles(report) + bodies_table(report) + plots(report) +
-         conformity_and_settings(report) + files(report) +
+         verdict(report) + tiles(report) + bodies_table(report) + below_table(report) +
+         plots(report) + conformity_and_settings(report) + files(report) +
          "<footer>Lengths in mm. Quality, conformity and edges are measured in the metric asked; "
          "layers are counted from wall to wall in the mesh's own metric; boundary to part and part "
          "to "

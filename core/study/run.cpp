@@ -4,14 +4,18 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/base/parallel.h"
 #include "core/mesh/validate.h"
 #include "core/natural/boundary_distance.h"
 #include "core/natural/layers.h"
+#include "core/natural/neighborhood.h"
 #include "core/natural/thickness_detector.h"
 #include "core/optimize/adapt.h"
+#include "core/sizing/sizing_field.h"
 #include "core/study/first_mesh.h"
 #include "core/study/join.h"
 #include "core/study/measure.h"
+#include "core/study/request.h"
 
 namespace lamella {
 
@@ -25,10 +29,8 @@ double seconds_since(Clock::time_point start) {
 
 constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations share the rest
 constexpr double kMinGuardShare = 0.3;
-// The best elements on average are a little larger than unit; layers are promised, not averages.
-constexpr double kAskedFiner = 1.05;
 constexpr double kAskedScale = kAskedFiner * kAskedFiner;  // of the metric
-constexpr double kSettled = 0.05;  // relative change of the node count
+constexpr double kSettled = 0.05;                          // relative change of the node count
 
 constexpr double kGained = 0.02;  // relative rise of the score that is worth another iteration
 
@@ -43,24 +45,26 @@ double layers_score(const LayerStats& layers, int asked) {
 class BodyLoop {
  public:
   BodyLoop(const Study& study, const Part& part)
-      : part_(part), options_(study.options), settings_(settings_of(study, part.name)) {
+      : study_(study),
+        part_(part),
+        options_(study.options),
+        settings_(settings_of(study, part.name)) {
     const double diagonal = box_diagonal(part.surface.points);
     outcome_.name = part.name;
     outcome_.layers_asked = settings_.layers;
     outcome_.cad_volume = part.cad_volume;
     outcome_.chord_tolerance = options_.chord_tolerance.value_or(1e-3 * diagonal);
-    outcome_.h_min = settings_.h_min.value_or(1e-3 * diagonal);
+    natural_ = natural_params(study, part);
+    outcome_.h_min = natural_.h_min;
     outcome_.notes = part.notes;
-    natural_.layers = settings_.layers;
-    natural_.alpha = settings_.alpha;
-    natural_.h_min = outcome_.h_min;
-    natural_.h_max = settings_.h_max.value_or(0);
-    natural_.threads = options_.threads;
   }
 
   Result<void> begin(const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
                      const Progress& progress) {
     const auto start = Clock::now();
+    Result<SizingField> sizing = SizingField::make(sizing_of(study_, part_.name), part_.surface);
+    if (!sizing) return sizing.error();
+    sizing_ = std::move(*sizing);
     Result<FirstMesh> first = first_mesh(part_, meshers, progress.portion(0, 0.7, "first mesh"));
     if (!first) return first.error();
     outcome_.first_mesh_by = first->made_by;
@@ -74,6 +78,7 @@ class BodyLoop {
   /// Errors: cancelled; failed when there is nothing better than the first mesh to fall back to.
   Result<void> step(const Progress& progress) {
     const auto start = Clock::now();
+    natural_.layers = layers_of_iteration(static_cast<int>(outcome_.records.size()));
     AdaptParams params;
     // What the tessellation has left of the tolerance.
     params.chord_tolerance = std::max(outcome_.chord_tolerance - part_.chord_error,
@@ -82,14 +87,16 @@ class BodyLoop {
     params.threads = options_.threads;
     // Asked at every accepted point, a detector that can answer there keeps walls from blurring
     // into their neighbors: two rounds reach what the nodal field does not in six.
-    MetricFunction<3> natural;
+    MetricFunction<3> asked_at;
     MetricField<3> asked = current_.metric;
-    if (const MetricFunction<3> function = detector_->function(natural_))
-      natural = [function](const Vec<3>& x) -> Metric<3> { return function(x) * kAskedScale; };
+    if (const MetricFunction<3> natural = detector_->function(natural_))
+      asked_at = [this, natural](const Vec<3>& x) -> Metric<3> {
+        return sizing_.apply(x, natural(x)) * kAskedScale;
+      };
     else
       for (Metric<3>& m : asked) m *= kAskedScale;
     Result<Adapted<3>> adapted =
-        adapt<3>(current_.mesh, asked, &part_.surface, params, progress.portion(0, 0.8), natural);
+        adapt<3>(current_.mesh, asked, &part_.surface, params, progress.portion(0, 0.8), asked_at);
     if (!adapted) return give_up(adapted.error());
     if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return give_up(valid.error());
@@ -105,6 +112,7 @@ class BodyLoop {
   Result<BodyOutcome> finish(const Progress& progress) {
     const IterationRecord& best = outcome_.records[best_record_];
     outcome_.layers = best.layers;
+    outcome_.below = best_.below;
     outcome_.mesh_volume = best.volume;
     Result<BoundaryDistance> distance =
         boundary_distance(best_.mesh, part_.surface, options_.threads, progress);
@@ -121,13 +129,25 @@ class BodyLoop {
   }
 
  private:
+  /// n, or less in the first iterations of a progressive run; the last two get n.
+  int layers_of_iteration(int i) const {
+    const bool early = options_.progressive && i + 1 < options_.iterations;
+    return early ? std::min(settings_.layers, i + 1) : settings_.layers;
+  }
+
   /// Takes the mesh as the next state, with metric, layers and record.
   Result<void> accept(SimplexMesh<3> mesh, Clock::time_point start, const Progress& progress) {
     MeshState next;
     next.mesh = std::move(mesh);
-    Result<NaturalField> field = detector_->field(next.mesh, natural_, progress.portion(0, 0.6));
+    Result<NaturalField> field = detector_->field(next.mesh, natural_, progress.portion(0, 0.55));
     if (!field) return field.error();
     next.metric = std::move(field->metric);
+    const auto correct = [&](std::size_t i) {
+      next.metric[i + 1] = sizing_.apply(next.mesh.points[i + 1], next.metric[i + 1]);
+    };
+    if (!sizing_.empty() && !parallel_each(next.mesh.node_count(), options_.threads,
+                                           progress.portion(0.55, 0.6), correct))
+      return cancelled_error();
     next.thickness = std::move(field->thickness);
     Result<IterationRecord> record = measure(next, progress.portion(0.6, 0.8));
     if (!record) return record.error();
@@ -135,7 +155,9 @@ class BodyLoop {
                                            options_.threads, progress.portion(0.8, 1));
     if (!layers) return layers.error();
     next.layers = std::move(layers->at_node);
+    next.below = std::move(layers->below);
     record->layers = layers->stats;
+    record->layers_by_nodes = average_layers(layer_numbers(next.mesh));
     record->iteration = static_cast<int>(outcome_.records.size());
     record->seconds = seconds_since(start);
 
@@ -143,8 +165,11 @@ class BodyLoop {
     if (!outcome_.records.empty()) {
       const auto before = static_cast<double>(outcome_.records.back().nodes);
       const double change = std::abs(static_cast<double>(record->nodes) - before) / before;
-      const bool settled = record->iteration > 1 && change < kSettled;
-      const bool enough = record->layers.places == 0 || record->layers.mean >= settings_.layers;
+      const bool settled =
+          record->iteration > 1 && change < kSettled && natural_.layers == settings_.layers;
+      // Where the user asks for less than the natural metric, fewer layers are what he wants.
+      const bool enough = sizing_.may_coarsen() || record->layers.places == 0 ||
+                          record->layers.mean >= settings_.layers;
       converged_ = settled && enough;
       done_ = settled && (score >= 1 || score < (1 + kGained) * best_score_);
     }
@@ -173,39 +198,19 @@ class BodyLoop {
     return {};
   }
 
+  const Study& study_;
   const Part& part_;
   const StudyOptions& options_;
   const BodySettings settings_;
   NaturalParams natural_;
   std::unique_ptr<ThicknessDetector> detector_;
+  SizingField sizing_;
   MeshState current_, best_;
   double best_score_ = 0;
   std::size_t best_record_ = 0;
   bool done_ = false, converged_ = false;
   BodyOutcome outcome_;
 };
-
-Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
-  const auto usage = [](const std::string& message, const std::string& hint) {
-    return Error{Code::usage, message, hint};
-  };
-  if (parts.empty()) return usage("There is no body to mesh.", "Open a STEP or STL file.");
-  if (study.options.iterations < 1)
-    return usage("At least one iteration is needed.", "Ask for 1 or more; 6 is the default.");
-  if (study.options.chord_tolerance && !(*study.options.chord_tolerance > 0))
-    return usage("The chord tolerance must be positive.", "Leave it out for the default.");
-  for (const Part& part : parts) {
-    const BodySettings body = settings_of(study, part.name);
-    const std::string who = "Body \"" + part.name + "\": ";
-    if (body.layers < 1) return usage(who + "at least one layer is needed.", "Ask for n >= 1.");
-    if (!(body.alpha >= 0)) return usage(who + "alpha must not be negative.", "1 is the default.");
-    if (body.h_min && !(*body.h_min > 0))
-      return usage(who + "h_min must be positive.", "Leave it out for the default.");
-    if (body.h_max && !(*body.h_max >= body.h_min.value_or(0) && *body.h_max > 0))
-      return usage(who + "h_max must be positive and not below h_min.", "Leave it out for none.");
-  }
-  return {};
-}
 
 }  // namespace
 
@@ -285,7 +290,8 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
   }
   if (outcome.bodies.size() > 1)
     for (BodyOutcome& body : outcome.bodies)
-      body.notes.push_back("Bodies are meshed one by one: where they touch, nodes are not shared.");
+      body.notes.emplace_back(
+          "Bodies are meshed one by one: where they touch, nodes are not shared.");
   outcome.seconds = seconds_since(start);
   progress.report(1);
   return outcome;

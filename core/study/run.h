@@ -9,6 +9,7 @@
 #include "core/mesh/simplex_mesh.h"
 #include "core/metric/metric.h"
 #include "core/natural/boundary_distance.h"
+#include "core/natural/layers.h"
 #include "core/optimize/generate.h"
 #include "core/study/record.h"
 #include "core/study/study.h"
@@ -22,6 +23,7 @@ struct MeshState {
   std::vector<double> thickness;  ///< [node] wall thickness 2 r, mm; entry 0 unused
   std::vector<double> layers;     ///< [node] layers measured back; NaN where not measured
   std::vector<double> quality;    ///< [element] c(T), eq. (3.7), in `metric`
+  std::vector<PlaceBelow> below;  ///< places with fewer layers than asked, body by body
 };
 
 /// What became of one body.
@@ -35,6 +37,7 @@ struct BodyOutcome {
   double chord_tolerance = 0;          ///< mm, the one that was used
   double h_min = 0;                    ///< mm, the one that was used
   LayerStats layers;
+  std::vector<PlaceBelow> below;  ///< places with fewer layers than asked, the largest first
   std::vector<IterationRecord> records;
   std::vector<std::string> notes;
 };

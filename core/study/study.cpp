@@ -13,4 +13,11 @@ BodySettings settings_of(const Study& study, const std::string& name) {
   return defaults;
 }
 
+std::vector<SizingObject> sizing_of(const Study& study, const std::string& name) {
+  std::vector<SizingObject> objects;
+  for (const SizingObject& object : study.sizing)
+    if (object.body.empty() || object.body == name) objects.push_back(object);
+  return objects;
+}
+
 }  // namespace lamella

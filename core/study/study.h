@@ -6,17 +6,23 @@
 #include <vector>
 
 #include "core/natural/detector.h"
+#include "core/sizing/sizing_object.h"
 
 namespace lamella {
 
 /// What the user asked for one body. Lengths in mm.
 struct BodySettings {
   std::string name;
-  int layers = 4;                  ///< n, elements through the thickness, >= 1
-  double alpha = 1;                ///< alpha_h of (4.68): sizes up to (1 + alpha) h1 are divided
-  std::optional<double> h_min{};   ///< unset: 1e-3 of the body's box diagonal
-  std::optional<double> h_max{};   ///< unset: no bound
+  int layers = 4;                 ///< n, elements through the thickness, >= 1
+  double alpha = 1;               ///< alpha_h of (4.68): sizes up to (1 + alpha) h1 are divided
+  std::optional<double> h_min{};  ///< unset: 1e-3 of the body's box diagonal
+  std::optional<double> h_max{};  ///< unset: no bound
   bool visible = true;
+  std::optional<int> layers2{};  ///< n2 (4.4.3) of sizes up to (1 + alpha + alpha2) h1
+  double alpha2 = 0;             ///< see n2: both or none
+  std::optional<int> layers3{};  ///< n3 of all sizes beyond; unset: not divided
+
+  bool operator==(const BodySettings&) const = default;
 };
 
 /// How the mesh is made. Lengths in mm.
@@ -27,6 +33,7 @@ struct StudyOptions {
   int threads = 0;                          ///< 0: all cores; the mesh does not depend on it
   std::uint64_t seed = 1;
   Detector detector = Detector::geometric;  ///< who finds the wall thickness
+  bool progressive = false;  ///< asks 2, 3, .. n layers (4.4.2): less memory at the first peak
 };
 
 /// One immutable value: what the user asked. The files are named, never held.
@@ -35,9 +42,12 @@ struct Study {
   std::vector<std::string> inputs;   ///< STEP or STL files, relative to the study's folder
   std::vector<BodySettings> bodies;  ///< by part name; a part without an entry gets the defaults
   StudyOptions options;
+  std::vector<SizingObject> sizing;  ///< on top of the natural metric, in this order
 };
 
 /// The settings of the part called `name`: its entry, or the defaults of BodySettings.
 BodySettings settings_of(const Study& study, const std::string& name);
+/// The sizing objects that apply to the part called `name`.
+std::vector<SizingObject> sizing_of(const Study& study, const std::string& name);
 
 }  // namespace lamella

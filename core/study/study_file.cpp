@@ -14,6 +14,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kSchema = 1;
 
+/// Names of the alternatives, in the order of their variants.
+const std::vector<std::string> kShapes = {"body", "sphere", "box", "cylinder", "faces"};
+const std::vector<std::string> kFrames = {"cartesian", "cylindrical", "spherical"};
+const std::vector<std::string> kProgressions = {"linear", "geometric"};
+
 /// Reads the members of one object; remembers the first complaint and which members were asked for.
 class Members {
  public:
@@ -54,6 +59,12 @@ class Members {
       return complain(name, "must be a whole number of at least " + std::to_string(least));
     value = v.get<Integer>();
   }
+  void integer(const std::string& name, std::optional<int>& value, std::int64_t least) {
+    if (!has(name)) return;
+    int number_read = static_cast<int>(least);
+    integer(name, number_read, least);
+    value = number_read;
+  }
   void number(const std::string& name, double& value, bool zero_allowed) {
     if (!has(name)) return;
     const Json& v = at(name);
@@ -67,6 +78,50 @@ class Members {
     double number_read = 0;
     number(name, number_read, false);
     value = number_read;
+  }
+  /// Three numbers, in mm or as a direction.
+  void vector(const std::string& name, Vec<3>& value, bool needed = false) {
+    if (!has(name)) {
+      if (needed) complain(name, "is needed");
+      return;
+    }
+    const Json& v = at(name);
+    if (!v.is_array() || v.size() != 3 ||
+        !std::all_of(v.begin(), v.end(), [](const Json& x) { return x.is_number(); }))
+      return complain(name, "must be a list of three numbers");
+    for (int k = 0; k < 3; ++k) value[k] = v[k].get<double>();
+  }
+  /// Three sizes.
+  void lengths(const std::string& name, Vec<3>& value) {
+    const std::string before = complaint_;
+    vector(name, value, true);
+    if (complaint_ == before && !(value.minCoeff() > 0)) complain(name, "must be positive numbers");
+  }
+  /// One of `names`; its index is returned, 0 with a complaint.
+  std::size_t choice(const std::string& name, const std::vector<std::string>& names) {
+    std::string value;
+    text(name, value);
+    const auto it = std::find(names.begin(), names.end(), value);
+    if (it != names.end()) return static_cast<std::size_t>(it - names.begin());
+    std::string known;
+    for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+    complain(name, "must be one of " + known);
+    return 0;
+  }
+  /// A list of texts or of whole numbers.
+  template <class Item>
+  void list(const std::string& name, std::vector<Item>& value) {
+    if (!has(name)) return;
+    const auto good = [](const Json& i) {
+      if constexpr (std::is_integral_v<Item>)
+        return i.is_number_integer() && i.get<std::int64_t>() == static_cast<Item>(i);
+      else
+        return i.is_string();
+    };
+    if (!at(name).is_array() || !std::all_of(at(name).begin(), at(name).end(), good))
+      return complain(name, std::is_integral_v<Item> ? "must be a list of whole numbers"
+                                                     : "must be a list of texts");
+    value = at(name).get<std::vector<Item>>();
   }
   /// A member that nobody asked for is a typing error, not something to pass over.
   void finish() {
@@ -95,6 +150,9 @@ BodySettings read_body(const Json& json, std::size_t index, std::string& complai
   if (body.name.empty()) m.complain("name", "is needed");
   m.integer("layers", body.layers, 1);
   m.number("alpha", body.alpha, true);
+  m.integer("layers2", body.layers2, 1);
+  m.number("alpha2", body.alpha2, true);
+  m.integer("layers3", body.layers3, 1);
   m.number("h_min", body.h_min);
   m.number("h_max", body.h_max);
   m.flag("visible", body.visible);
@@ -116,8 +174,189 @@ StudyOptions read_options(const Json& json, std::string& complaint) {
     options.detector = *known;
   else
     m.complain("detector", "must be \"geometric\" or \"neighborhood\"");
+  m.flag("progressive", options.progressive);
   m.finish();
   return options;
+}
+
+SizingShape read_shape(const Json& json, const std::string& path, std::string& complaint) {
+  Members m(json, path, complaint);
+  SizingShape shape;
+  switch (m.choice("kind", kShapes)) {
+    case 0:
+      break;
+    case 1: {
+      SphereShape s;
+      m.vector("center", s.center, true);
+      if (!m.has("radius")) m.complain("radius", "is needed");
+      m.number("radius", s.radius, false);
+      shape = s;
+      break;
+    }
+    case 2: {
+      BoxShape s;
+      m.vector("center", s.center, true);
+      m.lengths("size", s.size);
+      m.vector("x_axis", s.x_axis);
+      m.vector("y_axis", s.y_axis);
+      shape = s;
+      break;
+    }
+    case 3: {
+      CylinderShape s;
+      m.vector("from", s.from, true);
+      m.vector("to", s.to, true);
+      if (!m.has("radius")) m.complain("radius", "is needed");
+      m.number("radius", s.radius, false);
+      shape = s;
+      break;
+    }
+    default: {
+      FacesShape s;
+      m.list("ids", s.ids);
+      m.list("names", s.names);
+      m.number("depth", s.depth, true);
+      if (s.ids.empty() && s.names.empty()) m.complain("", "needs \"ids\" or \"names\"");
+      shape = s;
+    }
+  }
+  m.finish();
+  return shape;
+}
+
+AnalyticZone read_zone(const Json& json, const std::string& path, std::string& complaint) {
+  Members m(json, path, complaint);
+  AnalyticZone zone;
+  const auto round = [&](auto frame) {
+    m.vector("origin", frame.origin, true);
+    m.vector("axis", frame.axis);
+    zone.frame = frame;
+  };
+  switch (m.choice("frame", kFrames)) {
+    case 0: {
+      CartesianFrame frame;
+      m.vector("x_axis", frame.x_axis);
+      m.vector("y_axis", frame.y_axis);
+      zone.frame = frame;
+      break;
+    }
+    case 1:
+      round(CylindricalFrame{});
+      break;
+    default:
+      round(SphericalFrame{});
+  }
+  m.lengths("sizes", zone.sizes);
+  if (m.has("progression")) {
+    RadialProgression& p = zone.progression;
+    Members g(m.at("progression"), path + ".progression", complaint);
+    p.kind = g.choice("kind", kProgressions) == 1 ? RadialProgression::Kind::geometric
+                                                  : RadialProgression::Kind::linear;
+    g.number("from", p.from, true);
+    if (!g.has("to")) g.complain("to", "is needed");
+    g.number("to", p.to, false);
+    g.lengths("sizes", p.sizes);
+    g.finish();
+  }
+  m.flag("replace", zone.replace);
+  m.finish();
+  return zone;
+}
+
+SizingObject read_sizing(const Json& json, std::size_t index, std::string& complaint) {
+  const std::string path = "sizing[" + std::to_string(index) + "]";
+  SizingObject object;
+  object.name = "sizing " + std::to_string(index + 1);
+  Members m(json, path, complaint);
+  m.text("name", object.name);
+  m.text("body", object.body);
+  if (m.has("shape"))
+    object.shape = read_shape(m.at("shape"), path + ".shape", complaint);
+  else
+    m.complain("shape", "is needed");
+  if (m.has("zone")) {
+    object.asks = read_zone(m.at("zone"), path + ".zone", complaint);
+  } else {
+    SizeCorrection c;
+    m.number("size", c.size);
+    m.number("factor", c.factor);
+    if (c.size.has_value() == c.factor.has_value())
+      m.complain("", "needs one of \"size\", \"factor\" and \"zone\"");
+    m.number("gradation", c.gradation, false);
+    if (!(c.gradation > 1)) m.complain("gradation", "must be above 1");
+    m.flag("keep_directions", c.keep_directions);
+    object.asks = c;
+  }
+  m.finish();
+  return object;
+}
+
+Json json_of(const Vec<3>& v) { return {v[0], v[1], v[2]}; }
+
+Json json_of(const SizingShape& shape) {
+  Json json;
+  json["kind"] = kShapes.at(shape.index());
+  if (const auto* s = std::get_if<SphereShape>(&shape)) {
+    json["center"] = json_of(s->center);
+    json["radius"] = s->radius;
+  } else if (const auto* b = std::get_if<BoxShape>(&shape)) {
+    json["center"] = json_of(b->center);
+    json["size"] = json_of(b->size);
+    json["x_axis"] = json_of(b->x_axis);
+    json["y_axis"] = json_of(b->y_axis);
+  } else if (const auto* c = std::get_if<CylinderShape>(&shape)) {
+    json["from"] = json_of(c->from);
+    json["to"] = json_of(c->to);
+    json["radius"] = c->radius;
+  } else if (const auto* f = std::get_if<FacesShape>(&shape)) {
+    if (!f->ids.empty()) json["ids"] = f->ids;
+    if (!f->names.empty()) json["names"] = f->names;
+    json["depth"] = f->depth;
+  }
+  return json;
+}
+
+Json json_of(const AnalyticZone& zone) {
+  Json json;
+  json["frame"] = kFrames.at(zone.frame.index());
+  if (const auto* f = std::get_if<CartesianFrame>(&zone.frame)) {
+    json["x_axis"] = json_of(f->x_axis);
+    json["y_axis"] = json_of(f->y_axis);
+  } else {
+    const auto round = [&](const auto& frame) {
+      json["origin"] = json_of(frame.origin);
+      json["axis"] = json_of(frame.axis);
+    };
+    if (const auto* c = std::get_if<CylindricalFrame>(&zone.frame)) round(*c);
+    if (const auto* s = std::get_if<SphericalFrame>(&zone.frame)) round(*s);
+  }
+  json["sizes"] = json_of(zone.sizes);
+  const RadialProgression& p = zone.progression;
+  if (p.kind != RadialProgression::Kind::none)
+    json["progression"] = {
+        {"kind", kProgressions.at(p.kind == RadialProgression::Kind::geometric ? 1 : 0)},
+        {"from", p.from},
+        {"to", p.to},
+        {"sizes", json_of(p.sizes)}};
+  json["replace"] = zone.replace;
+  return json;
+}
+
+Json json_of(const SizingObject& object) {
+  Json json;
+  json["name"] = object.name;
+  if (!object.body.empty()) json["body"] = object.body;
+  json["shape"] = json_of(object.shape);
+  if (const auto* zone = std::get_if<AnalyticZone>(&object.asks)) {
+    json["zone"] = json_of(*zone);
+    return json;
+  }
+  const auto& c = std::get<SizeCorrection>(object.asks);
+  if (c.size) json["size"] = *c.size;
+  if (c.factor) json["factor"] = *c.factor;
+  json["gradation"] = c.gradation;
+  json["keep_directions"] = c.keep_directions;
+  return json;
 }
 
 }  // namespace
@@ -135,6 +374,9 @@ std::string study_to_json(const Study& study) {
     b["name"] = body.name;
     b["layers"] = body.layers;
     b["alpha"] = body.alpha;
+    if (body.layers2) b["layers2"] = *body.layers2;
+    if (body.layers2) b["alpha2"] = body.alpha2;
+    if (body.layers3) b["layers3"] = *body.layers3;
     if (body.h_min) b["h_min"] = *body.h_min;
     if (body.h_max) b["h_max"] = *body.h_max;
     b["visible"] = body.visible;
@@ -148,6 +390,8 @@ std::string study_to_json(const Study& study) {
   options["threads"] = o.threads;
   options["seed"] = o.seed;
   options["detector"] = detector_name(o.detector);
+  options["progressive"] = o.progressive;
+  for (const SizingObject& object : study.sizing) json["sizing"].push_back(json_of(object));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -190,6 +434,13 @@ Result<Study> study_from_json(const std::string& text, const std::string& where)
         study.bodies.push_back(read_body(body, study.bodies.size(), complaint));
   }
   if (m.has("options")) study.options = read_options(m.at("options"), complaint);
+  if (m.has("sizing")) {
+    if (!m.at("sizing").is_array())
+      m.complain("sizing", "must be a list");
+    else
+      for (const Json& object : m.at("sizing"))
+        study.sizing.push_back(read_sizing(object, study.sizing.size(), complaint));
+  }
   m.finish();
   if (!complaint.empty()) return refuse(complaint, "Correct or remove it.");
   return study;

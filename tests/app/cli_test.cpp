@@ -98,6 +98,13 @@ TEST_F(Cli, WrongUsageIsStatus2AndWritesNothing) {
         "mesh a.step -o",
         "mesh a.step --unit furlong -o b.msh",
         "mesh a.step --detector radar -o b.msh",
+        "mesh a.step --forecast -o b.msh",
+        "mesh a.step --size-sphere 0,0,0,1 -o b.msh",
+        "mesh a.step --size-sphere 0,0,zero,1,1 -o b.msh",
+        "mesh a.step --size-box 0,0,0,1,1,1 -o b.msh",
+        "mesh a.step --size-cylinder 0,0,0,0,0,1,1,1y -o b.msh",
+        "mesh a.step --size-face 3 -o b.msh",
+        "mesh a.step --size-face box:3,x -o b.msh",
         "adapt a.mesh -o b.mesh",
         "adapt a.mesh --sol a.sol --metric uniform -o b.mesh",
         "adapt a.mesh --metric uniform --background -o b.mesh",
@@ -259,6 +266,65 @@ TEST_F(Cli, AStudySaysTheSameAsTheCommandLine) {
   const int by_line = run("mesh parts/box.stl -n 2 --iterations 3 --seed 5 -o b.msh");
   EXPECT_EQ(by_study, by_line);
   EXPECT_EQ(read_file(folder / "a.msh").value(), read_file(folder / "b.msh").value());
+}
+
+TEST_F(Cli, AGateIsForecastAndRefined) {
+  write("box.stl", box_stl(12, 10, 1));
+  const std::string gate = " -n 2 --size-sphere 6,5,1,1,0.2 ";
+  ASSERT_EQ(run("mesh box.stl" + gate + "--forecast --json"), 0) << err;
+  const json told = lines().back();
+  ASSERT_EQ(told["phase"], "forecast");
+  EXPECT_EQ(folder.names(), Names{"box.stl"});
+  EXPECT_GT(told["corrected"]["nodes"], 2 * told["natural"]["nodes"].get<double>());
+  ASSERT_EQ(run("mesh box.stl" + gate + "-o gate.msh --json"), 0) << err;
+  const double gated = lines().back()["nodes"];
+  EXPECT_NEAR(told["corrected"]["nodes"], gated, 0.25 * gated);
+  ASSERT_EQ(run("mesh box.stl -n 2 -o plain.msh --json"), 0) << err;
+  const double plain = lines().back()["nodes"];
+  EXPECT_NEAR(told["natural"]["nodes"], plain, 0.25 * plain);
+  // The text has both lines.
+  ASSERT_EQ(run("mesh box.stl" + gate + "--forecast"), 0) << err;
+  EXPECT_NE(out.find("box: about"), std::string::npos) << out;
+  EXPECT_NE(out.find("sizes corrected: about"), std::string::npos) << out;
+}
+
+TEST_F(Cli, AStudyAndTheCommandLineCorrectSizesAlike) {
+  write("box.stl", box_stl(12, 10, 1));
+  ASSERT_EQ(run("info box.stl --faces --json"), 0) << err;
+  std::string top;
+  for (const json& line : lines())
+    if (line["phase"] == "face" && line["point"][2] > 0.99) top = std::to_string(int(line["id"]));
+  ASSERT_FALSE(top.empty());
+  write("study.json", R"({"schema": 1, "inputs": ["box.stl"], "bodies": [{"name": "box"}],
+      "sizing": [
+        {"shape": {"kind": "sphere", "center": [6, 5, 1], "radius": 1}, "factor": 0.5,
+         "gradation": 2, "keep_directions": true},
+        {"shape": {"kind": "box", "center": [1, 1, 0.5], "size": [2, 2, 1]}, "size": 0.3,
+         "gradation": 2, "keep_directions": true},
+        {"shape": {"kind": "cylinder", "from": [9, 7, 0], "to": [9, 7, 1], "radius": 0.5},
+         "size": 0.2, "gradation": 2, "keep_directions": true},
+        {"body": "box", "shape": {"kind": "faces", "ids": [)" +
+                          top + R"(]}, "size": 0.24,
+         "gradation": 2, "keep_directions": true}]})");
+  ASSERT_EQ(run("mesh study.json --forecast --json"), 0) << err;
+  const json by_study = lines().back();
+  ASSERT_EQ(run("mesh box.stl --size-sphere 6,5,1,1,0.5x --size-box 0,0,0,2,2,1,0.3 "
+                "--size-cylinder 9,7,0,9,7,1,0.5,0.2 --size-face box:" +
+                top + ",0.24 --size-gradation 2 --size-keep-directions --forecast --json"),
+            0)
+      << err;
+  EXPECT_EQ(lines().back()["corrected"], by_study["corrected"]);
+  EXPECT_GT(by_study["corrected"]["nodes"], by_study["natural"]["nodes"]);
+  // One body needs no name; what is not there is told.
+  EXPECT_EQ(run("mesh box.stl --size-face " + top + ",0.24 --forecast"), 0) << err;
+  EXPECT_EQ(run("mesh box.stl --size-face lid:0,0.24 --forecast"), 2);
+  EXPECT_NE(err.find("\"lid\""), std::string::npos) << err;
+  EXPECT_EQ(run("mesh box.stl --size-face box:gate,0.24 --forecast"), 2);
+  EXPECT_NE(err.find("\"gate\""), std::string::npos) << err;
+  EXPECT_EQ(run("mesh box.stl --size-sphere 0,0,0,-1,1 --forecast"), 2);
+  EXPECT_EQ(run("mesh box.stl --size-sphere 0,0,0,1,1 --size-gradation 1 --forecast"), 2);
+  write("bad.json", R"({"schema": 1, "inputs": ["box.stl"], "sizing": [{"shape": 3}]})");
+  EXPECT_EQ(run("mesh bad.json --forecast"), 3);
 }
 
 TEST_F(Cli, TheMeshDoesNotDependOnTheThreads) {

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/study/measure.h"
+#include "core/study/study_file.h"
 #include "ui/commands/edit_study.h"
 
 namespace lamella::ui {
@@ -46,9 +47,13 @@ void make_names_unique(std::vector<Part>& parts) {
   }
 }
 
-bool same(const BodySettings& a, const BodySettings& b) {
-  return a.name == b.name && a.layers == b.layers && a.alpha == b.alpha && a.h_min == b.h_min &&
-         a.h_max == b.h_max;
+/// What the mesh depends on, as text.
+std::string asked(Study study) {
+  study.name.clear();
+  study.inputs.clear();
+  study.options.threads = 0;
+  for (BodySettings& body : study.bodies) body.visible = true;
+  return study_to_json(study);
 }
 
 }  // namespace
@@ -64,12 +69,7 @@ Session::Session(Services services, QObject* parent)
 
 bool Session::outdated() const {
   if (!run_study_ || iterations_.empty()) return false;
-  const Study& a = *run_study_;
-  const Study& b = *study_;
-  return a.options.iterations != b.options.iterations || a.options.seed != b.options.seed ||
-         a.options.detector != b.options.detector ||
-         a.options.chord_tolerance != b.options.chord_tolerance ||
-         !std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), b.bodies.end(), same);
+  return asked(*run_study_) != asked(*study_);
 }
 
 std::shared_ptr<const MeshState> Session::shown_state() const {
@@ -442,8 +442,7 @@ void Session::edit_selection(const QString& what,
   for (const int k : selection_) {
     const BodySettings before = study.bodies[k];
     change(study.bodies[k]);
-    changed =
-        changed || !same(before, study.bodies[k]) || before.visible != study.bodies[k].visible;
+    changed = changed || before != study.bodies[k];
   }
   if (!changed) return;
   const QString title =

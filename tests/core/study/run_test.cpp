@@ -6,6 +6,7 @@
 #include "core/mesh/sample_meshes.h"
 #include "core/mesh/validate.h"
 #include "core/study/measure.h"
+#include "core/study/request.h"
 
 namespace lamella {
 namespace {
@@ -71,6 +72,91 @@ TEST(Run, TheNeighborhoodDetectorRefinesAcrossThePlate) {
   EXPECT_NE(outcome->records.back().nodes, other->records.back().nodes);
 }
 
+TEST(Run, AProgressiveRunAsksForMoreLayersEachTime) {
+  Study study;
+  study.bodies = {{"plate", 6}};
+  study.options.iterations = 6;
+  const Result<Outcome> at_once = run(study, {plate("plate")}, real());
+  study.options.progressive = true;
+  const Result<Outcome> outcome = run(study, {plate("plate")}, real());
+  ASSERT_TRUE(outcome.ok() && at_once.ok());
+  const std::vector<IterationRecord>& records = outcome->records;
+  ASSERT_GE(records.size(), 4u);
+  EXPECT_LT(records[1].layers.mean, 4);
+  EXPECT_GT(records[3].layers.mean, records[1].layers.mean);
+  EXPECT_GE(outcome->bodies[0].layers.mean, 6) << "n is reached in the end";
+  EXPECT_LT(records[1].nodes, at_once->records[1].nodes);
+}
+
+TEST(Run, PlacesBelowNAreListedAndNCountedAsTheThesisDoes) {
+  Study study;
+  study.bodies = {{"plate", 4}};
+  study.options.iterations = 1;
+  const Result<Outcome> outcome = run(study, {plate("plate")}, real());
+  ASSERT_TRUE(outcome.ok());
+  const BodyOutcome& body = outcome->bodies[0];
+  double area = 0;
+  for (const PlaceBelow& place : body.below) {
+    EXPECT_LT(place.layers, 4);
+    area += place.area;
+  }
+  // Both sides of the plate, 8 x 8.
+  EXPECT_NEAR(area, (1 - body.layers.share_reached) * 2 * 64, 0.02 * 2 * 64);
+  EXPECT_EQ(outcome->state->below.size(), body.below.size());
+  EXPECT_GT(body.records.back().layers_by_nodes, 1);
+}
+
+Study with_gate(const SizingShape& shape, double size, const std::string& body = "") {
+  Study study;
+  study.bodies = {{"plate", 2}};
+  SizeCorrection c;
+  c.size = size;
+  study.sizing = {{"gate", body, shape, c}};
+  return study;
+}
+
+TEST(Run, AGateIsRefinedAndTheThicknessStays) {
+  const Vec<3> gate(4, 4, 1);
+  Study study = with_gate(SphereShape{gate, 0.8}, 0.15);
+  study.options.iterations = 2;
+  const Result<Outcome> outcome = run(study, {plate("plate")}, real());
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  const MeshState& state = *outcome->state;
+  const NaturalDetector detector(plate("plate").surface);
+  const NaturalParams natural = natural_params(study, plate("plate"));
+  double sum = 0;
+  int edges = 0;
+  for (const auto& e : state.mesh.elements) {
+    const auto p = state.mesh.corners(e);
+    if ((0.25 * (p[0] + p[1] + p[2] + p[3]) - gate).norm() > 0.7) continue;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j, ++edges) sum += (p[i] - p[j]).norm();
+  }
+  ASSERT_GT(edges, 0);
+  EXPECT_NEAR(sum / edges, 0.15, 0.03);
+  for (std::size_t n = 1; n < state.mesh.points.size(); ++n) {
+    const Vec<3>& x = state.mesh.points[n];
+    if ((x - gate).norm() < 0.79) {
+      EXPECT_NEAR(sizes<3>(state.metric[n])[2], 0.15, 1e-9);
+    }
+    EXPECT_EQ(state.thickness[n], detector.at(x, natural).thickness);
+  }
+}
+
+TEST(Run, ACoarserZoneNeedsNotTheLayers) {
+  Study study;
+  study.bodies = {{"plate", 8}};
+  study.options.iterations = 4;
+  AnalyticZone zone;
+  zone.sizes = {1, 1, 0.5};
+  zone.replace = true;
+  study.sizing = {{"zone", "plate", WholeBody{}, zone}};
+  const Result<Outcome> outcome = run(study, {plate("plate")}, real());
+  ASSERT_TRUE(outcome.ok());
+  EXPECT_TRUE(outcome->converged);
+  EXPECT_NEAR(outcome->bodies[0].layers.mean, 2, 0.6);
+}
+
 TEST(Run, TheNextMesherIsAskedAndTheNotesSaySo) {
   Meshers meshers = real();
   meshers.insert(meshers.begin(), std::make_shared<GivesUp>());
@@ -125,6 +211,17 @@ TEST(Run, RequestsWithoutSenseAreRefused) {
   EXPECT_EQ(run(study, {plate("plate")}, real()).error().code, Code::usage);
   study.bodies = {{"plate", 2, 1, 0.5, 0.1}};
   EXPECT_EQ(run(study, {plate("plate")}, real()).error().code, Code::usage);
+  FacesShape face, no_face;
+  face.ids = {0};
+  no_face.ids = {99};
+  EXPECT_EQ(run(with_gate(no_face, 1), {plate("plate")}, real()).error().code, Code::usage);
+  EXPECT_EQ(run(with_gate(SphereShape{}, 1), {plate("plate")}, real()).error().code, Code::usage);
+  const Error lost = run(with_gate(face, 1, "lid"), {plate("plate")}, real()).error();
+  EXPECT_EQ(lost.code, Code::usage);
+  EXPECT_NE(lost.message.find("\"lid\""), std::string::npos);
+  EXPECT_NE(lost.hint.find("\"plate\""), std::string::npos);
+  const Error whose = run(with_gate(face, 1), {plate("a"), plate("b")}, real()).error();
+  EXPECT_EQ(whose.code, Code::usage);
 }
 
 }  // namespace

@@ -13,7 +13,10 @@ Study full_study() {
   study.name = "Tr\u00e4ger \"A\"";
   study.inputs = {"parts/a.step", "/abs/b.stl"};
   study.bodies = {{"cover", 6, 0.5, 0.01, 3.5, false}, {"lid"}};
-  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood};
+  study.bodies[1].layers2 = 5;
+  study.bodies[1].alpha2 = 9.5;
+  study.bodies[1].layers3 = 2;
+  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood, true};
   return study;
 }
 
@@ -33,13 +36,115 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(back->bodies[0].h_max, 3.5);
   EXPECT_FALSE(back->bodies[0].visible);
   EXPECT_FALSE(back->bodies[1].h_min.has_value());
+  EXPECT_FALSE(back->bodies[0].layers2.has_value());
+  EXPECT_EQ(back->bodies[1].layers2, 5);
+  EXPECT_EQ(back->bodies[1].alpha2, 9.5);
+  EXPECT_EQ(back->bodies[1].layers3, 2);
   EXPECT_EQ(back->options.chord_tolerance, 0.02);
   EXPECT_EQ(back->options.angle_tolerance, 0.2);
   EXPECT_EQ(back->options.iterations, 9);
   EXPECT_EQ(back->options.threads, 3);
   EXPECT_EQ(back->options.seed, 12345678901234567890u);
   EXPECT_EQ(back->options.detector, Detector::neighborhood);
+  EXPECT_TRUE(back->options.progressive);
   EXPECT_EQ(study_to_json(*back), study_to_json(study));
+}
+
+/// One object of each shape and each thing to ask.
+Study sized_study() {
+  Study study;
+  BoxShape box{{1, 2, 3}, {4, 5, 6.5}, {0, 1, 0}, {0, 0, -2}};
+  FacesShape faces;
+  faces.ids = {3, 0};
+  faces.names = {"gate \"1\""};
+  faces.depth = 0.25;
+  SizeCorrection size, factor;
+  size.size = 0.1;
+  size.gradation = 1.7;
+  factor.factor = 2.5;
+  factor.keep_directions = true;
+  AnalyticZone flat, tube, ball;
+  flat.frame = CartesianFrame{{0, 1, 0}, {0, 0, 1}};
+  flat.sizes = tube.sizes = ball.sizes = {0.1, 0.2, 0.4};
+  tube.frame = CylindricalFrame{{1, 0, 0}, {1, 1, 0}};
+  tube.progression = {RadialProgression::Kind::geometric, 0.5, 3, {1, 2, 3}};
+  tube.replace = true;
+  ball.frame = SphericalFrame{{0, 7, 0}, {1, 0, 0}};
+  ball.progression = {RadialProgression::Kind::linear, 0, 2, {1, 2, 3}};
+  study.sizing = {{"gate", "cover", SphereShape{{0.1, -2, 1e-7}, 0.5}, size},
+                  {"all", "", WholeBody{}, factor},
+                  {"plate", "", box, flat},
+                  {"tube", "lid", CylinderShape{{0, 0, 0}, {0, 0, 9}, 2}, tube},
+                  {"skin", "lid", faces, ball}};
+  return study;
+}
+
+TEST(StudyFile, SizingObjectsReadBackAsWritten) {
+  const Study study = sized_study();
+  const Result<Study> back = study_from_json(study_to_json(study), "s");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(study_to_json(*back), study_to_json(study));
+  ASSERT_EQ(back->sizing.size(), 5u);
+  EXPECT_EQ(back->sizing[0].body, "cover");
+  EXPECT_EQ(std::get<SphereShape>(back->sizing[0].shape).center, Vec<3>(0.1, -2, 1e-7));
+  EXPECT_EQ(std::get<SizeCorrection>(back->sizing[0].asks).gradation, 1.7);
+  EXPECT_TRUE(std::holds_alternative<WholeBody>(back->sizing[1].shape));
+  EXPECT_EQ(std::get<SizeCorrection>(back->sizing[1].asks).factor, 2.5);
+  EXPECT_FALSE(std::get<SizeCorrection>(back->sizing[1].asks).size.has_value());
+  EXPECT_TRUE(std::get<SizeCorrection>(back->sizing[1].asks).keep_directions);
+  EXPECT_EQ(std::get<BoxShape>(back->sizing[2].shape).y_axis, Vec<3>(0, 0, -2));
+  const auto& tube = std::get<AnalyticZone>(back->sizing[3].asks);
+  EXPECT_EQ(std::get<CylindricalFrame>(tube.frame).axis, Vec<3>(1, 1, 0));
+  EXPECT_TRUE(tube.replace);
+  EXPECT_EQ(tube.progression.kind, RadialProgression::Kind::geometric);
+  EXPECT_EQ(tube.progression.sizes, Vec<3>(1, 2, 3));
+  const auto& faces = std::get<FacesShape>(back->sizing[4].shape);
+  EXPECT_EQ(faces.ids, (std::vector<std::int32_t>{3, 0}));
+  EXPECT_EQ(faces.names, std::vector<std::string>{"gate \"1\""});
+  EXPECT_EQ(faces.depth, 0.25);
+  EXPECT_EQ(sizing_of(*back, "lid").size(), 4u);
+  EXPECT_EQ(sizing_of(*back, "cover").size(), 3u);
+}
+
+TEST(StudyFile, EveryMistakeOfASizingObjectIsNamed) {
+  const std::string sphere = R"("shape": {"kind": "sphere", "center": [0, 0, 0], "radius": 1})";
+  const std::string tube = R"("frame": "cylindrical", "origin": [0, 0, 0], "sizes": [1, 1, 1])";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {R"("size": 1)", "sizing[0].shape"},
+      {sphere, "sizing[0]"},
+      {sphere + R"(, "size": 1, "factor": 1)", "sizing[0]"},
+      {sphere + R"(, "size": 0)", "sizing[0].size"},
+      {sphere + R"(, "size": 1, "gradation": 0.9)", "sizing[0].gradation"},
+      {sphere + R"(, "size": 1, "sise": 1)", "sizing[0].sise"},
+      {sphere + R"(, "zone": {)" + tube + R"(}, "size": 1)", "sizing[0].size"},
+      {R"("size": 1, "shape": {"kind": "ball"})", "sizing[0].shape.kind"},
+      {R"("size": 1, "shape": {"kind": "sphere", "radius": 1})", "sizing[0].shape.center"},
+      {R"("size": 1, "shape": {"kind": "sphere", "center": [0, 0, 0]})", "sizing[0].shape.radius"},
+      {R"("size": 1, "shape": {"kind": "sphere", "center": [0, 0], "radius": 1})",
+       "sizing[0].shape.center"},
+      {R"("size": 1, "shape": {"kind": "box", "center": [0, 0, 0], "size": [1, 0, 1]})",
+       "sizing[0].shape.size"},
+      {R"("size": 1, "shape": {"kind": "faces"})", "sizing[0].shape"},
+      {R"("size": 1, "shape": {"kind": "faces", "ids": [0.5]})", "sizing[0].shape.ids"},
+      {R"("size": 1, "shape": {"kind": "faces", "ids": [5000000000]})", "sizing[0].shape.ids"},
+      {R"("size": 1, "shape": {"kind": "faces", "names": [1]})", "sizing[0].shape.names"},
+      {sphere + R"(, "zone": {"frame": "conical", "sizes": [1, 1, 1]})", "sizing[0].zone.frame"},
+      {sphere + R"(, "zone": {"frame": "cartesian"})", "sizing[0].zone.sizes"},
+      {sphere + R"(, "zone": {"frame": "cylindrical", "sizes": [1, 1, 1]})",
+       "sizing[0].zone.origin"},
+      {sphere + R"(, "zone": {)" + tube + R"(, "progression": {"kind": "cubic"}})",
+       "sizing[0].zone.progression.kind"},
+      {sphere + R"(, "zone": {)" + tube + R"(, "progression": {"kind": "linear", "to": 1}})",
+       "sizing[0].zone.progression.sizes"}};
+  for (const auto& [text, named] : cases) {
+    const Result<Study> study =
+        study_from_json(R"({"schema": 1, "sizing": [{)" + text + "}]}", "bad.json");
+    ASSERT_FALSE(study.ok()) << text;
+    EXPECT_EQ(study.error().code, Code::bad_input);
+    EXPECT_NE(study.error().message.find("\"" + named + "\""), std::string::npos)
+        << study.error().message;
+  }
+  EXPECT_FALSE(study_from_json(R"({"schema": 1, "sizing": 3})", "bad.json").ok());
 }
 
 TEST(StudyFile, LeftOutMeansDefault) {

@@ -1,0 +1,121 @@
+#include "app/cli_sizing.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace lamella::cli {
+
+namespace {
+
+std::optional<double> number(std::string_view text) {
+  double value = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end.ec != std::errc{} || end.ptr != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+/// "0.3" is a size in mm, "0.3x" a factor of the natural size.
+bool read_size(std::string_view text, SizeCorrection& correction) {
+  const bool factor = !text.empty() && text.back() == 'x';
+  if (factor) text.remove_suffix(1);
+  (factor ? correction.factor : correction.size) = number(text);
+  return (factor ? correction.factor : correction.size).has_value();
+}
+
+/// One kind of option: how many numbers come before the size, and the shape they make.
+struct Kind {
+  const char* name;
+  const char* form;
+  int numbers;
+  SizingShape (*shape)(const std::vector<double>&);
+};
+constexpr Kind kSphere = {"sphere", "X,Y,Z,R,SIZE", 4,
+                          [](const std::vector<double>& v) -> SizingShape {
+                            return SphereShape{{v[0], v[1], v[2]}, v[3]};
+                          }};
+constexpr Kind kBox = {"box", "X,Y,Z,X,Y,Z,SIZE", 6,
+                       [](const std::vector<double>& v) -> SizingShape {
+                         const Vec<3> a(v[0], v[1], v[2]), b(v[3], v[4], v[5]);
+                         BoxShape box;
+                         box.center = 0.5 * (a + b);
+                         box.size = (a - b).cwiseAbs();
+                         return box;
+                       }};
+constexpr Kind kCylinder = {"cylinder", "X,Y,Z,X,Y,Z,R,SIZE", 7,
+                            [](const std::vector<double>& v) -> SizingShape {
+                              return CylinderShape{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]};
+                            }};
+
+Error misread(const std::string& name, const std::string& form, const std::string& text) {
+  return {Code::usage, "--size-" + name + " " + text + " is not understood.",
+          "Write it as " + form +
+              ", lengths in mm; SIZE is a size, or with an x behind it a factor "
+              "of the natural one, as 0.3x."};
+}
+
+Result<SizingObject> with_numbers(const Kind& kind, const std::string& text,
+                                  const SizeCorrection& asked) {
+  std::vector<double> values;
+  std::string_view rest = text;
+  for (int i = 0; i < kind.numbers; ++i) {
+    const std::size_t comma = rest.find(',');
+    const auto value = number(rest.substr(0, comma));
+    if (comma == rest.npos || !value) return misread(kind.name, kind.form, text);
+    values.push_back(*value);
+    rest.remove_prefix(comma + 1);
+  }
+  SizeCorrection correction = asked;
+  if (!read_size(rest, correction)) return misread(kind.name, kind.form, text);
+  return SizingObject{std::string(kind.name) + " " + text, "", kind.shape(values), correction};
+}
+
+Result<SizingObject> on_face(const std::string& text, const SizeCorrection& asked) {
+  const std::size_t comma = text.rfind(',');
+  SizeCorrection correction = asked;
+  if (comma == text.npos || comma == 0 ||
+      !read_size(std::string_view(text).substr(comma + 1), correction))
+    return misread("face", "BODY:FACE,SIZE", text);
+  // Names of bodies may have a colon too.
+  const std::size_t colon = text.rfind(':', comma);
+  const std::string face =
+      colon == text.npos ? text.substr(0, comma) : text.substr(colon + 1, comma - colon - 1);
+  FacesShape shape;
+  std::int32_t id = 0;
+  const auto end = std::from_chars(face.data(), face.data() + face.size(), id);
+  if (end.ec == std::errc{} && end.ptr == face.data() + face.size())
+    shape.ids = {id};
+  else
+    shape.names = {face};
+  return SizingObject{"face " + text, colon == text.npos ? "" : text.substr(0, colon), shape,
+                      correction};
+}
+
+}  // namespace
+
+Result<std::vector<SizingObject>> sizing_of(const MeshCommand& c) {
+  SizeCorrection asked;
+  if (c.size_gradation) asked.gradation = *c.size_gradation;
+  asked.keep_directions = c.size_keep_directions;
+  std::vector<SizingObject> objects;
+  const auto add = [&](const std::vector<std::string>& texts, auto read) -> std::optional<Error> {
+    for (const std::string& text : texts) {
+      Result<SizingObject> object = read(text);
+      if (!object) return object.error();
+      objects.push_back(std::move(*object));
+    }
+    return std::nullopt;
+  };
+  const auto numbers = [&](const Kind& kind) {
+    return [&](const std::string& text) { return with_numbers(kind, text, asked); };
+  };
+  if (auto error = add(c.size_spheres, numbers(kSphere))) return *error;
+  if (auto error = add(c.size_boxes, numbers(kBox))) return *error;
+  if (auto error = add(c.size_cylinders, numbers(kCylinder))) return *error;
+  if (auto error = add(c.size_faces, [&](const std::string& t) { return on_face(t, asked); }))
+    return *error;
+  return objects;
+}
+
+}  // namespace lamella::cli

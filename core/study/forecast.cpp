@@ -1,0 +1,42 @@
+#include "core/study/forecast.h"
+
+#include <chrono>
+
+#include "core/natural/natural_metric.h"
+#include "core/study/first_mesh.h"
+#include "core/study/request.h"
+
+namespace lamella {
+
+Result<std::vector<BodyForecast>> forecast_study(
+    const Study& study, const std::vector<Part>& parts,
+    const std::vector<std::shared_ptr<const VolumeMesher>>& meshers, const Progress& progress) {
+  using Clock = std::chrono::steady_clock;
+  if (Result<void> good = check_request(study, parts); !good) return good.error();
+  std::vector<BodyForecast> bodies;
+  const auto count = static_cast<double>(parts.size());
+  for (const Part& part : parts) {
+    const auto at = static_cast<double>(bodies.size());
+    const Progress share = progress.portion(at / count, (at + 1) / count);
+    Result<SizingField> sizing = SizingField::make(sizing_of(study, part.name), part.surface);
+    if (!sizing) return sizing.error();
+    Result<FirstMesh> first = first_mesh(part, meshers, share.portion(0, 0.7, "first mesh"));
+    if (!first) return first.error();
+
+    const auto start = Clock::now();
+    const NaturalDetector detector(part.surface);
+    const NaturalParams natural = natural_params(study, part);
+    ForecastParams params;
+    params.size_factor = 1 / kAskedFiner;
+    params.threads = study.options.threads;
+    Result<SizingForecast> mesh = forecast_mesh(
+        first->mesh, [&](const Vec<3>& x) { return detector.at(x, natural).metric; }, *sizing,
+        params, share.portion(0.7, 1));
+    if (!mesh) return mesh.error();
+    bodies.push_back(
+        {part.name, *mesh, std::chrono::duration<double>(Clock::now() - start).count()});
+  }
+  return bodies;
+}
+
+}  // namespace lamella

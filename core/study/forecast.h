@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "core/base/progress.h"
+#include "core/optimize/generate.h"
+#include "core/sizing/forecast.h"
+#include "core/study/study.h"
+
+namespace lamella {
+
+/// The mesh of one body that `run` may be expected to make.
+struct BodyForecast {
+  std::string name;
+  SizingForecast mesh;
+  double seconds = 0;  ///< the forecast itself took, without the first mesh
+};
+
+/// From the first mesh of every body, without adapting it. `meshers` as for `run`.
+/// Errors: those of `run`.
+Result<std::vector<BodyForecast>> forecast_study(
+    const Study& study, const std::vector<Part>& parts,
+    const std::vector<std::shared_ptr<const VolumeMesher>>& meshers, const Progress& progress = {});
+
+}  // namespace lamella

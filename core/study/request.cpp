@@ -1,0 +1,70 @@
+#include "core/study/request.h"
+
+#include <algorithm>
+
+#include "core/sizing/sizing_field.h"
+#include "core/study/measure.h"
+
+namespace lamella {
+
+Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
+  const auto usage = [](const std::string& message, const std::string& hint) {
+    return Error{Code::usage, message, hint};
+  };
+  if (parts.empty()) return usage("There is no body to mesh.", "Open a STEP or STL file.");
+  if (study.options.iterations < 1)
+    return usage("At least one iteration is needed.", "Ask for 1 or more; 6 is the default.");
+  if (study.options.chord_tolerance && !(*study.options.chord_tolerance > 0))
+    return usage("The chord tolerance must be positive.", "Leave it out for the default.");
+  for (const Part& part : parts) {
+    const BodySettings body = settings_of(study, part.name);
+    const std::string who = "Body \"" + part.name + "\": ";
+    if (body.layers < 1) return usage(who + "at least one layer is needed.", "Ask for n >= 1.");
+    if (body.layers2.value_or(1) < 1 || body.layers3.value_or(1) < 1)
+      return usage(who + "n2 and n3 must be at least 1.", "Leave them out for long directions.");
+    if (!(body.alpha >= 0)) return usage(who + "alpha must not be negative.", "1 is the default.");
+    if (!(body.alpha2 >= 0)) return usage(who + "alpha2 must not be negative.", "Leave it out.");
+    if (body.layers2.has_value() != (body.alpha2 > 0))
+      return usage(who + "n2 and alpha2 go together.",
+                   "n2 divides the sizes up to 1 + alpha + alpha2 times the smallest.");
+    if (body.h_min && !(*body.h_min > 0))
+      return usage(who + "h_min must be positive.", "Leave it out for the default.");
+    if (body.h_max && !(*body.h_max >= body.h_min.value_or(0) && *body.h_max > 0))
+      return usage(who + "h_max must be positive and not below h_min.", "Leave it out for none.");
+  }
+  for (const SizingObject& object : study.sizing) {
+    if (object.body.empty() && parts.size() > 1 && std::holds_alternative<FacesShape>(object.shape))
+      return usage("Sizing object \"" + object.name + "\": it picks faces, but of no body.",
+                   "Name the body: faces are numbered in each.");
+    if (!object.body.empty() && std::none_of(parts.begin(), parts.end(), [&](const Part& part) {
+          return part.name == object.body;
+        })) {
+      std::string known;
+      for (const Part& part : parts) known += (known.empty() ? "\"" : ", \"") + part.name + "\"";
+      return usage(
+          "Sizing object \"" + object.name + "\": there is no body \"" + object.body + "\".",
+          "The bodies are " + known + ".");
+    }
+  }
+  for (const Part& part : parts)
+    if (Result<SizingField> field = SizingField::make(sizing_of(study, part.name), part.surface);
+        !field)
+      return field.error();
+  return {};
+}
+
+NaturalParams natural_params(const Study& study, const Part& part) {
+  const BodySettings settings = settings_of(study, part.name);
+  NaturalParams params;
+  params.layers = settings.layers;
+  params.alpha = settings.alpha;
+  params.layers2 = settings.layers2;
+  params.alpha2 = settings.alpha2;
+  params.layers3 = settings.layers3;
+  params.h_min = settings.h_min.value_or(1e-3 * box_diagonal(part.surface.points));
+  params.h_max = settings.h_max.value_or(0);
+  params.threads = study.options.threads;
+  return params;
+}
+
+}  // namespace lamella

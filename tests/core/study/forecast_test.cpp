@@ -1,0 +1,70 @@
+#include "core/study/forecast.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/soup.h"
+#include "core/mesh/sample_meshes.h"
+#include "core/study/measure.h"
+#include "core/study/run.h"
+
+namespace lamella {
+namespace {
+
+Part plate(const std::string& name) {
+  Part part;
+  part.name = name;
+  part.surface = boundary_surface(box_mesh<3>({2, 2, 1}, Vec<3>::Zero(), Vec<3>(8, 8, 1)), 0);
+  find_features(part.surface, 0.5);
+  part.cad_volume = 64;
+  return part;
+}
+
+std::vector<std::shared_ptr<const VolumeMesher>> meshers() {
+  return {std::shared_ptr<const VolumeMesher>(topological_mesher())};
+}
+
+TEST(ForecastStudy, TellsWhatTheRunWillMake) {
+  Study study;
+  study.bodies = {{"plate", 3}};
+  SizeCorrection size;
+  size.size = 0.15;
+  study.sizing = {{"gate", "plate", SphereShape{{4, 4, 1}, 0.8}, size}};
+  const auto forecast = forecast_study(study, {plate("plate")}, meshers());
+  ASSERT_TRUE(forecast.ok()) << forecast.error().message;
+  ASSERT_EQ(forecast->size(), 1u);
+  EXPECT_EQ(forecast->at(0).name, "plate");
+  const SizingForecast& told = forecast->at(0).mesh;
+  for (const bool with : {false, true}) {
+    if (!with) study.sizing.clear();
+    if (with) study.sizing = {{"gate", "plate", SphereShape{{4, 4, 1}, 0.8}, size}};
+    const Result<Outcome> outcome = run(study, {plate("plate")}, meshers());
+    ASSERT_TRUE(outcome.ok());
+    const auto nodes = static_cast<double>(outcome->state->mesh.node_count());
+    EXPECT_NEAR(with ? told.corrected.nodes : told.natural.nodes, nodes, 0.25 * nodes) << with;
+  }
+}
+
+TEST(ForecastStudy, EachBodyHasItsOwn) {
+  Study study;
+  study.bodies = {{"a", 1}, {"b", 4}};
+  SizeCorrection size;
+  size.size = 0.1;
+  study.sizing = {{"gate", "a", SphereShape{{4, 4, 1}, 0.5}, size}};
+  const auto forecast = forecast_study(study, {plate("a"), plate("b")}, meshers());
+  ASSERT_TRUE(forecast.ok());
+  const SizingForecast &a = forecast->at(0).mesh, &b = forecast->at(1).mesh;
+  EXPECT_GT(a.corrected.nodes, 2 * a.natural.nodes);
+  EXPECT_EQ(b.corrected.nodes, b.natural.nodes);
+  EXPECT_GT(b.natural.nodes, a.natural.nodes);
+}
+
+TEST(ForecastStudy, RefusesWhatRunRefuses) {
+  Study study;
+  EXPECT_EQ(forecast_study(study, {}, meshers()).error().code, Code::usage);
+  study.sizing = {{"gate", "lid", SphereShape{{4, 4, 1}, 0.5}, SizeCorrection{}}};
+  EXPECT_EQ(forecast_study(study, {plate("plate")}, meshers()).error().code, Code::usage);
+  EXPECT_EQ(forecast_study({}, {plate("plate")}, {}).error().code, Code::failed);
+}
+
+}  // namespace
+}  // namespace lamella
