@@ -57,7 +57,7 @@ TEST(NaturalMetric, ThicknessAndWidthGetNumbersOfLayersOfTheirOwn) {
   const Vec<3> center{100, w / 2, t / 2};
   const Vec<3> plain = sizes<3>(detector.at(center, params).metric);
   params.layers2 = 5;
-  params.alpha2 = 10;
+  params.alpha2 = 8;
   const Vec<3> two = sizes<3>(detector.at(center, params).metric);
   params.layers3 = 10;
   const Vec<3> three = sizes<3>(detector.at(center, params).metric);
