@@ -63,11 +63,13 @@ TEST(NaturalMetric, ThicknessAndWidthGetNumbersOfLayersOfTheirOwn) {
   const Vec<3> three = sizes<3>(detector.at(center, params).metric);
   EXPECT_NEAR(two[0], t / 4, 0.02 * t);
   EXPECT_NEAR(two[1], w / 5, 0.2 * w / 5);
-  EXPECT_NEAR(two[1] / plain[1], 4.0 / 5, 1e-9) << "not divided: half the semi-axis";
-  EXPECT_NEAR(two[2], plain[2], 1e-9) << "the length is left alone";
+  // The width is seen a little longer than 10 t, the length cut at 20 t: both touch the band where
+  // one number fades into the next.
+  EXPECT_NEAR(two[1] / plain[1], 4.0 / 5, 0.02) << "not divided: half the semi-axis";
+  EXPECT_NEAR(two[2] / plain[2], 1, 0.02) << "the length is left alone";
   EXPECT_NEAR(three[0], two[0], 1e-9);
-  EXPECT_NEAR(three[1], two[1], 1e-9);
-  EXPECT_NEAR(three[2] / two[2], 4.0 / 10, 1e-9);
+  EXPECT_NEAR(three[1] / two[1], 1, 0.05);
+  EXPECT_NEAR(three[2] / two[2], 4.0 / 10, 0.02);
   params.layers2.reset();
   const Vec<3> all_long = sizes<3>(detector.at(center, params).metric);
   EXPECT_NEAR(all_long[1] / plain[1], 4.0 / 10, 1e-9) << "without n2, n3 is for all beyond alpha1";
