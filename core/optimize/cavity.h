@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <span>
+#include <vector>
 
 #include "core/optimize/adapt.h"
 #include "core/optimize/packed.h"
@@ -43,12 +43,40 @@ struct Rating {
   double energy = std::numeric_limits<double>::infinity();
 };
 
-/// Whether the qualities `a` go before `b` in the order (3.9): both sorted from the worst, the
-/// first difference decides, and the shorter list is padded with +infinity.
-inline bool goes_before(std::span<const double> a, std::span<const double> b) {
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    if (a[i] != b[i]) return a[i] > b[i];
-  return a.size() < b.size();
+/// Qualities of a star, sorted from the worst as far as someone has looked.
+class SortedQualities {
+ public:
+  void clear() {
+    values_.clear();
+    sorted_ = 0;
+  }
+  void add(double quality) { values_.push_back(quality); }
+  std::size_t size() const { return values_.size(); }
+  /// The i-th from the worst, when those before it were asked for already; +infinity behind the
+  /// last.
+  double at(std::size_t i) {
+    if (i >= values_.size()) return std::numeric_limits<double>::infinity();
+    if (i == sorted_) {
+      const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(i);
+      std::iter_swap(begin, std::min_element(begin, values_.end()));
+      ++sorted_;
+    }
+    return values_[i];
+  }
+
+ private:
+  std::vector<double> values_;
+  std::size_t sorted_ = 0;
+};
+
+/// Whether the qualities `a` go before `b` in the order (3.9): sorted from the worst, the first
+/// difference decides, and the shorter list is padded with +infinity.
+inline bool goes_before(SortedQualities& a, SortedQualities& b) {
+  for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+    const double x = a.at(i), y = b.at(i);
+    if (x != y) return x > y;
+  }
+  return false;
 }
 
 /// h^D, given h^2.

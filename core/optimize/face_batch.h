@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "core/optimize/cavity.h"
 
 namespace lamella {

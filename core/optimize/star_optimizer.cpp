@@ -191,6 +191,7 @@ void StarOptimizer<D>::open_cavity(std::span<const std::int32_t> elements, NodeI
   virtual_faces_.clear();
   link_.clear();
   ++mark_value_;
+  const typename FaceBatch<D>::Nodes source{topo_.elements, topo_.points, averaged()};
   for (auto e : cavity_) {
     const Element& nodes = topo_.elements[e];
     const bool is_virtual = nodes[0] == 0;
@@ -204,7 +205,7 @@ void StarOptimizer<D>::open_cavity(std::span<const std::int32_t> elements, NodeI
           f.place = k;
           virtual_faces_.push_back(f);
         } else {
-          faces_.add({topo_.elements, topo_.points, averaged()}, e, k);
+          faces_.add(source, e, k);
         }
       } else if (n != 0 && mark_[n] != mark_value_) {
         mark_[n] = mark_value_;
@@ -217,12 +218,11 @@ void StarOptimizer<D>::open_cavity(std::span<const std::int32_t> elements, NodeI
 template <int D>
 void StarOptimizer<D>::start_from_current() {
   best_.clear();
-  best_sorted_ = false;
   best_worst_ = infinity;
   best_cost_ = 0;
   for (auto e : cavity_)
     if (!topo_.is_virtual(e)) {
-      best_.push_back(rating_[e].quality);
+      best_.add(rating_[e].quality);
       best_worst_ = std::min(best_worst_, rating_[e].quality);
       best_cost_ += rating_[e].energy - typical_energy<D>;
     }
@@ -239,7 +239,6 @@ void StarOptimizer<D>::start_from_current() {
 template <int D>
 bool StarOptimizer<D>::beats(const Apex& apex) {
   trial_.clear();
-  trial_sorted_ = false;
   trial_worst_ = infinity;
   trial_cost_ = 0;
   typename FaceBatch<D>::Rates rates;
@@ -263,7 +262,7 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
         sum += rates.energy[l] - 1;
         ++count;
       } else {
-        trial_.push_back(rates.quality[l]);
+        trial_.add(rates.quality[l]);
       }
     }
     if (by_energy && sum > limit) return false;
@@ -273,10 +272,6 @@ bool StarOptimizer<D>::beats(const Apex& apex) {
     return trial_cost_ < best_cost_ - least_gain;
   }
   if (trial_worst_ != best_worst_) return true;
-  std::sort(trial_.begin(), trial_.end());
-  trial_sorted_ = true;
-  if (!best_sorted_) std::sort(best_.begin(), best_.end());
-  best_sorted_ = true;
   return goes_before(trial_, best_);
 }
 
@@ -288,7 +283,6 @@ void StarOptimizer<D>::offer(const Apex& apex, const BoundarySite& site) {
     best_retag_ = retag_;
   }
   std::swap(best_, trial_);
-  best_sorted_ = trial_sorted_;
   best_worst_ = trial_worst_;
   best_cost_ = trial_cost_;
   best_apex_ = apex;
@@ -325,6 +319,9 @@ Packed<D> StarOptimizer<D>::metric_in_star(NodeId s, const Vec<D>& x) {
     if (best >= 0) break;
   }
   if (!in) return metric_[s];
+  bool uniform = true;
+  for (NodeId n : in->nodes) uniform = uniform && metric_[n].c == metric_[s].c;
+  if (uniform) return metric_[s];
   Vec<D> w = best_weights.cwiseMax(0.0);
   double ws = std::max(0.0, 1 - best_weights.sum());
   const double total = w.sum() + ws;
@@ -403,10 +400,14 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n, bool is_long) {
       site.ends[0] = site.on_feature ? s : 0;
       site.ends[1] = site.on_feature ? n : 0;
     }
-    Packed<D> c = Packed<D>::zero();
-    c.add(1 - t, carried(s));
-    c.add(t, carried(n));
-    offer(new_point(x, carrier_.metric(c)), site);
+    Packed<D> metric = metric_[s];
+    if (metric.c != metric_[n].c) {
+      Packed<D> c = Packed<D>::zero();
+      c.add(1 - t, carried(s));
+      c.add(t, carried(n));
+      metric = carrier_.metric(c);
+    }
+    offer(new_point(x, metric), site);
   }
   if (!found_) return false;
   replace_cavity(best_apex_, 0);

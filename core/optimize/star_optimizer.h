@@ -153,8 +153,7 @@ class StarOptimizer {
   std::vector<NodeId> link_;
   std::vector<std::uint32_t> mark_;
   std::uint32_t mark_value_ = 0;
-  std::vector<double> best_, trial_;
-  bool best_sorted_ = false, trial_sorted_ = false;
+  SortedQualities best_, trial_;
   double best_worst_ = 0, trial_worst_ = 0;  ///< quality
   double best_cost_ = 0, trial_cost_ = 0;    ///< energy above that of a typical element
   double cavity_worst_ = 0;

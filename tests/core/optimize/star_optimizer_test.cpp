@@ -157,6 +157,12 @@ testing::AssertionResult no_worse(const std::vector<double>& a, const std::vecto
   return testing::AssertionSuccess();
 }
 
+SortedQualities of(const std::vector<double>& list) {
+  SortedQualities qualities;
+  for (const double q : list) qualities.add(q);
+  return qualities;
+}
+
 TEST(Order, IsAStrictWeakOrderOfSortedLists) {
   // Few values and lengths, so that ties and prefixes abound.
   std::vector<std::vector<double>> lists;
@@ -164,19 +170,24 @@ TEST(Order, IsAStrictWeakOrderOfSortedLists) {
   for (int i = 0; i < 60; ++i) {
     std::vector<double> list(random() % 4);
     for (double& q : list) q = 0.25 * static_cast<double>(1 + random() % 3);
-    std::sort(list.begin(), list.end());
     lists.push_back(std::move(list));
   }
-  const auto equal = [](const auto& a, const auto& b) {
-    return !goes_before(a, b) && !goes_before(b, a);
+  const auto before = [](const auto& a, const auto& b) {
+    SortedQualities first = of(a), second = of(b);
+    return goes_before(first, second);
+  };
+  const auto equal = [&](const auto& a, const auto& b) { return !before(a, b) && !before(b, a); };
+  const auto sorted = [](auto list) {
+    std::sort(list.begin(), list.end());
+    return list;
   };
   for (const auto& a : lists) {
-    EXPECT_FALSE(goes_before(a, a));
+    EXPECT_FALSE(before(a, a));
     for (const auto& b : lists) {
-      EXPECT_FALSE(goes_before(a, b) && goes_before(b, a));
-      EXPECT_EQ(equal(a, b), a == b) << "distinct lists are told apart";
+      EXPECT_FALSE(before(a, b) && before(b, a));
+      EXPECT_EQ(equal(a, b), sorted(a) == sorted(b)) << "distinct lists are told apart";
       for (const auto& c : lists) {
-        EXPECT_TRUE(goes_before(a, c) || !goes_before(a, b) || !goes_before(b, c));
+        EXPECT_TRUE(before(a, c) || !before(a, b) || !before(b, c));
         EXPECT_TRUE(equal(a, c) || !equal(a, b) || !equal(b, c));
       }
     }
@@ -184,7 +195,8 @@ TEST(Order, IsAStrictWeakOrderOfSortedLists) {
 }
 
 TEST(Order, ThePrefixGoesFirstAndTheWorstElementDecides) {
-  const std::vector<double> shorter{0.3, 0.5}, longer{0.3, 0.5, 0.9}, worse{0.2, 0.9, 0.9};
+  SortedQualities shorter = of({0.5, 0.3}), longer = of({0.3, 0.9, 0.5}),
+                  worse = of({0.9, 0.2, 0.9});
   EXPECT_TRUE(goes_before(shorter, longer));
   EXPECT_TRUE(goes_before(longer, worse));
   EXPECT_FALSE(goes_before(worse, shorter));
