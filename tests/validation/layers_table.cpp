@@ -111,16 +111,5 @@ Result<void> regenerate(const fs::path& docs, const std::optional<fs::path>& cad
 }  // namespace lamella
 
 int main(int argc, char** argv) {
-  if (argc != 2 && argc != 3) {
-    std::fprintf(stderr,
-                 "usage: lamella_layers_table FOLDER [PARTS], the folder that holds validation.md "
-                 "and that of the CAD files\n");
-    return lamella::exit_code(lamella::Code::usage);
-  }
-  std::optional<std::filesystem::path> cad;
-  if (argc == 3) cad = argv[2];
-  const lamella::Result<void> done = lamella::regenerate(argv[1], cad);
-  if (done) return 0;
-  std::fprintf(stderr, "%s %s\n", done.error().message.c_str(), done.error().hint.c_str());
-  return lamella::exit_code(done.error().code);
+  return lamella::write_tables(argc, argv, "lamella_layers_table", lamella::regenerate);
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdio>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/base/result.h"
@@ -17,6 +20,26 @@ inline Result<void> set_table(std::string& page, const std::string& name,
                  "It stands between the lines <!-- table " + name + " --> and " + end + "."};
   page.replace(from + begin.size(), to - from - begin.size(), table);
   return {};
+}
+
+/// The main function of a program that writes tables into validation.md: its folder, and that of
+/// the real parts, which may be left out.
+template <class Regenerate>
+int write_tables(int argc, char** argv, const char* program, Regenerate&& regenerate) {
+  if (argc != 2 && argc != 3) {
+    std::fprintf(
+        stderr,
+        "usage: %s FOLDER [PARTS], the folder that holds validation.md and that of the CAD "
+        "files\n",
+        program);
+    return exit_code(Code::usage);
+  }
+  std::optional<std::filesystem::path> cad;
+  if (argc == 3) cad = argv[2];
+  const Result<void> done = regenerate(argv[1], cad);
+  if (done) return 0;
+  std::fprintf(stderr, "%s %s\n", done.error().message.c_str(), done.error().hint.c_str());
+  return exit_code(done.error().code);
 }
 
 }  // namespace lamella

@@ -6,18 +6,10 @@
 #include "core/mesh/sample_meshes.h"
 #include "core/study/measure.h"
 #include "core/study/run.h"
+#include "tests/support/plate_part.h"
 
 namespace lamella {
 namespace {
-
-Part plate(const std::string& name) {
-  Part part;
-  part.name = name;
-  part.surface = boundary_surface(box_mesh<3>({2, 2, 1}, Vec<3>::Zero(), Vec<3>(8, 8, 1)), 0);
-  find_features(part.surface, 0.5);
-  part.cad_volume = 64;
-  return part;
-}
 
 std::vector<std::shared_ptr<const VolumeMesher>> meshers() {
   return {std::shared_ptr<const VolumeMesher>(topological_mesher())};

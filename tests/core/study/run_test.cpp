@@ -7,19 +7,10 @@
 #include "core/mesh/validate.h"
 #include "core/study/measure.h"
 #include "core/study/request.h"
+#include "tests/support/plate_part.h"
 
 namespace lamella {
 namespace {
-
-/// A plate of 8 x 8 x 1.
-Part plate(const std::string& name) {
-  Part part;
-  part.name = name;
-  part.surface = boundary_surface(box_mesh<3>({2, 2, 1}, Vec<3>::Zero(), Vec<3>(8, 8, 1)), 0);
-  find_features(part.surface, 0.5);
-  part.cad_volume = 64;
-  return part;
-}
 
 class GivesUp : public VolumeMesher {
  public:
