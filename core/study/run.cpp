@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
 #include "core/base/parallel.h"
 #include "core/mesh/validate.h"
@@ -121,7 +122,7 @@ class BodyLoop {
     if (best.layers.places > 0 && best.layers.p5 < 0.9 * settings_.layers)
       outcome_.notes.push_back(
           "At some places the walls have fewer layers than asked: 5 % of their area below " +
-          std::to_string(best.layers.p5).substr(0, 4) + ".");
+          std::to_string(best.layers.p5).substr(0, 4) + largest_place() + ".");
     if (best_record_ + 1 != outcome_.records.size())
       outcome_.notes.push_back("The mesh of iteration " + std::to_string(best.iteration) +
                                " was kept: later ones had fewer layers.");
@@ -133,6 +134,15 @@ class BodyLoop {
   int layers_of_iteration(int i) const {
     const bool early = options_.progressive && i + 1 < options_.iterations;
     return early ? std::min(settings_.layers, i + 1) : settings_.layers;
+  }
+
+  std::string largest_place() const {
+    if (best_.below.empty()) return "";
+    const Vec<3>& x = best_.below.front().at;
+    char text[120];
+    std::snprintf(text, sizeof text, "; the largest such place is near (%.4g, %.4g, %.4g) mm", x[0],
+                  x[1], x[2]);
+    return text;
   }
 
   /// Takes the mesh as the next state, with metric, layers and record.
