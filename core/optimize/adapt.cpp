@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/mesh/interfaces.h"
 #include "core/mesh/quality.h"
+#include "core/optimize/memory_need.h"
 #include "core/optimize/star_optimizer.h"
 
 namespace lamella {
@@ -109,7 +110,7 @@ class Adaption {
       sort_in_space(work_);
       sorted_at_ = work_.node_count();
     }
-    return run(Partition<D>(work_, report_.sweeps++, params_.threads), sweep, 1, progress);
+    return run(Partition<D>(work_, report_.sweeps, params_.threads), sweep, 1, progress);
   }
 
   /// As many sweeps over the surroundings of poor elements, where they are a small part of the
@@ -118,7 +119,6 @@ class Adaption {
     std::vector<std::int32_t> patch = around_poor(sweep.attention);
     const auto count = static_cast<std::size_t>(std::count(patch.begin(), patch.end(), 1));
     if (count > patch.size() / 8) return std::nullopt;
-    report_.sweeps += sweeps;
     if (count == 0) return 0;
     // The rest goes through in pieces, which free their memory one by one.
     constexpr std::size_t piece = 200'000;
@@ -134,6 +134,7 @@ class Adaption {
                   const Progress& progress, int active = std::numeric_limits<int>::max()) {
     std::vector<Block<D>> blocks(partition.count());
     std::vector<AdaptReport> counts(blocks.size());
+    std::vector<int> swept(blocks.size(), 0);
     std::atomic<std::size_t> operations = 0, finished = 0;
     parallel_each(
         blocks.size(), params_.threads, {},
@@ -149,6 +150,7 @@ class Adaption {
           std::size_t done = 0;
           for (int s = 0; s < sweeps; ++s) {
             done = star.sweep(local, progress);
+            ++swept[i];
             if (done == 0) break;
           }
           operations += done;
@@ -159,6 +161,7 @@ class Adaption {
         },
         1);
     work_ = merge(work_, blocks, params_.threads);
+    report_.sweeps += std::max(1, *std::max_element(swept.begin(), swept.end()));
     for (const AdaptReport& c : counts) {
       report_.splits += c.splits;
       report_.collapses += c.collapses;
@@ -271,16 +274,11 @@ class Adaption {
   std::atomic<bool> overfull_ = false;
 };
 
-/// Elements a node in a mesh of good elements, and bytes an element takes at the most while a round
-/// is under way, its share of the nodes and the result included (measured, rounded up).
+/// Elements a node in a mesh of good elements.
 template <int D>
 constexpr double elements_a_node = D == 2   ? 2
                                    : D == 3 ? 5.5
                                             : 16;
-template <int D>
-constexpr double bytes_an_element = D == 2   ? 400
-                                    : D == 3 ? 220
-                                             : 240;
 
 /// (1.34) before the start: nodes and MB.
 template <int D>

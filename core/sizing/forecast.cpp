@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "core/base/parallel.h"
+#include "core/optimize/memory_need.h"
 
 namespace lamella {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 constexpr double kElements = 1.06;
 constexpr double kNodesAnElement = 1 / 5.7;
 constexpr double kNodesAFacet = 0.205;
-constexpr double kBytesAnElement = 220;
 
 /// A part worth less than this share of the whole is not looked at closer.
 constexpr double kShare = 1.0 / 2000;
@@ -145,7 +145,7 @@ MeshForecast forecast_of(double volume, double area, double s) {
   MeshForecast f;
   f.elements = kElements * volume / (s * s * s * unit_simplex_measure(3));
   f.nodes = kNodesAnElement * f.elements + kNodesAFacet * area / (s * s * unit_simplex_measure(2));
-  f.memory = 1e-6 * kBytesAnElement * f.elements;
+  f.memory = 1e-6 * bytes_an_element<3> * f.elements;
   return f;
 }
 

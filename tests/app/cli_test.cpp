@@ -98,6 +98,9 @@ TEST_F(Cli, WrongUsageIsStatus2AndWritesNothing) {
         "mesh a.step -o",
         "mesh a.step --unit furlong -o b.msh",
         "mesh a.step --detector radar -o b.msh",
+        "mesh a.step --layers2 0 -o b.msh",
+        "mesh a.step --alpha2 -1 -o b.msh",
+        "mesh a.step --layers3 none -o b.msh",
         "mesh a.step --forecast -o b.msh",
         "mesh a.step --size-sphere 0,0,0,1 -o b.msh",
         "mesh a.step --size-sphere 0,0,zero,1,1 -o b.msh",
@@ -201,7 +204,7 @@ TEST_F(Cli, BadMeshesAreStatus3) {
   EXPECT_EQ(run("check inverted.mesh"), 3);
 }
 
-TEST_F(Cli, TheDetectorIsTakenAndWrittenDown) {
+TEST_F(Cli, DetectorAndSeveralThicknessesAreTakenAndWrittenDown) {
   ASSERT_EQ(run("sample wedge -o w.step"), 0) << err;
   const auto nodes = [&](const std::string& options) {
     const int status = run("mesh w.step -n 2 --iterations 1 --json -o w.mesh " + options);
@@ -213,10 +216,18 @@ TEST_F(Cli, TheDetectorIsTakenAndWrittenDown) {
   };
   const int by_default = nodes("");
   EXPECT_EQ(nodes("--detector geometric"), by_default);
+  const auto study = [&] {
+    const Result<std::string> report = read_file(folder / "w.report.json");
+    EXPECT_TRUE(report.ok());
+    return json::parse(report.ok() ? *report : "{}")["study"];
+  };
   EXPECT_NE(nodes("--detector neighborhood"), by_default);
-  const Result<std::string> report = read_file(folder / "w.report.json");
-  ASSERT_TRUE(report.ok());
-  EXPECT_EQ(json::parse(*report)["study"]["options"]["detector"], "neighborhood");
+  EXPECT_EQ(study()["options"]["detector"], "neighborhood");
+  EXPECT_GT(nodes("--layers2 8 --alpha2 20 --layers3 9 --progressive"), by_default);
+  EXPECT_EQ(study()["bodies"][0]["layers2"], 8);
+  EXPECT_EQ(study()["bodies"][0]["alpha2"], 20);
+  EXPECT_EQ(study()["bodies"][0]["layers3"], 9);
+  EXPECT_EQ(study()["options"]["progressive"], true);
 }
 
 TEST_F(Cli, APlateGetsItsLayersAndEveryFileAgrees) {

@@ -64,7 +64,7 @@ std::string row(const Named& named, const std::vector<Part>& parts, int n) {
   line += std::to_string(last.iteration) + " | " + grouped(last.nodes) + " | " +
           change(static_cast<double>(before.nodes), static_cast<double>(last.nodes)) + " | " +
           change(before.layers.mean, last.layers.mean) + " | ";
-  LayerStats layers = last.layers;
+  const LayerStats& layers = last.layers;
   std::size_t below = 0;
   for (const BodyOutcome& body : outcome->bodies) below += body.below.size();
   return line + short_number(layers.p5, 3) + " / " + short_number(layers.p50, 3) + " / " +

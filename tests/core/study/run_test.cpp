@@ -202,6 +202,12 @@ TEST(Run, RequestsWithoutSenseAreRefused) {
   EXPECT_EQ(run(study, {plate("plate")}, real()).error().code, Code::usage);
   study.bodies = {{"plate", 2, 1, 0.5, 0.1}};
   EXPECT_EQ(run(study, {plate("plate")}, real()).error().code, Code::usage);
+  study.bodies = {{"plate", 2}};
+  study.bodies[0].layers2 = 3;
+  EXPECT_EQ(run(study, {plate("plate")}, real()).error().code, Code::usage) << "without alpha2";
+  study.bodies[0].layers2.reset();
+  study.bodies[0].layers3 = 0;
+  EXPECT_EQ(run(study, {plate("plate")}, real()).error().code, Code::usage);
   FacesShape face, no_face;
   face.ids = {0};
   no_face.ids = {99};
