@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "core/base/parallel.h"
 #include "core/mesh/validate.h"
 #include "core/natural/boundary_distance.h"
+#include "core/natural/layer_correction.h"
 #include "core/natural/layers.h"
 #include "core/natural/neighborhood.h"
 #include "core/natural/thickness_detector.h"
@@ -31,7 +33,8 @@ double seconds_since(Clock::time_point start) {
 constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations share the rest
 constexpr double kMinGuardShare = 0.3;
 constexpr double kAskedScale = kAskedFiner * kAskedFiner;  // of the metric
-constexpr double kSettled = 0.05;                          // relative change of the node count
+constexpr double kWanted = 1.1;    // of n: the average place, so that the poor ones have n
+constexpr double kSettled = 0.05;  // relative change of the node count
 
 constexpr double kGained = 0.02;  // relative rise of the score that is worth another iteration
 
@@ -92,10 +95,12 @@ class BodyLoop {
     MetricField<3> asked = current_.metric;
     if (const MetricFunction<3> natural = detector_->function(natural_))
       asked_at = [this, natural](const Vec<3>& x) -> Metric<3> {
-        return sizing_.apply(x, natural(x)) * kAskedScale;
+        return sizing_.apply(x, correction_.apply(x, natural(x), natural_.h_min)) * kAskedScale;
       };
     else
-      for (Metric<3>& m : asked) m *= kAskedScale;
+      for (std::size_t i = 1; i < asked.size(); ++i)
+        asked[i] =
+            correction_.apply(current_.mesh.points[i], asked[i], natural_.h_min) * kAskedScale;
     Result<Adapted<3>> adapted =
         adapt<3>(current_.mesh, asked, &part_.surface, params, progress.portion(0, 0.8), asked_at);
     if (!adapted) return give_up(adapted.error());
@@ -152,8 +157,11 @@ class BodyLoop {
     Result<NaturalField> field = detector_->field(next.mesh, natural_, progress.portion(0, 0.55));
     if (!field) return field.error();
     next.metric = std::move(field->metric);
+    std::vector<char> by_hand(next.mesh.points.size(), 0);
     const auto correct = [&](std::size_t i) {
-      next.metric[i + 1] = sizing_.apply(next.mesh.points[i + 1], next.metric[i + 1]);
+      const Metric<3> natural = next.metric[i + 1];
+      next.metric[i + 1] = sizing_.apply(next.mesh.points[i + 1], natural);
+      by_hand[i + 1] = next.metric[i + 1] != natural;
     };
     if (!sizing_.empty() && !parallel_each(next.mesh.node_count(), options_.threads,
                                            progress.portion(0.55, 0.6), correct))
@@ -165,6 +173,8 @@ class BodyLoop {
                                            options_.threads, progress.portion(0.8, 1));
     if (!layers) return layers.error();
     next.layers = std::move(layers->at_node);
+    if (!outcome_.records.empty())
+      if (Result<void> learnt = learn(next, by_hand); !learnt) return learnt;
     next.below = std::move(layers->below);
     record->layers = layers->stats;
     record->layers_by_nodes = average_layers(layer_numbers(next.mesh));
@@ -195,6 +205,18 @@ class BodyLoop {
     return {};
   }
 
+  /// Where layers are what the walls ask, not what the user does by hand.
+  Result<void> learn(const MeshState& made, const std::vector<char>& by_hand) {
+    std::vector<double> layers = made.layers;
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      if (by_hand[i]) layers[i] = std::numeric_limits<double>::quiet_NaN();
+    Result<LayerCorrection> learnt =
+        LayerCorrection::learn(correction_, made.mesh, layers, kWanted * natural_.layers);
+    if (!learnt) return learnt.error();
+    correction_ = std::move(*learnt);
+    return {};
+  }
+
   /// An iteration that failed ends the body with what it has; without any adapted mesh it is an
   /// error.
   Result<void> give_up(const Error& error) {
@@ -215,6 +237,7 @@ class BodyLoop {
   NaturalParams natural_;
   std::unique_ptr<ThicknessDetector> detector_;
   SizingField sizing_;
+  LayerCorrection correction_;
   MeshState current_, best_;
   double best_score_ = 0;
   std::size_t best_record_ = 0;
