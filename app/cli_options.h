@@ -23,6 +23,7 @@ struct MeshCommand {
   bool size_keep_directions = false;
   bool forecast = false;  ///< tell it, mesh nothing
   bool progressive = false;
+  std::optional<double> memory;
   std::string unit = "mm";
   std::string mesher = "auto";
   std::optional<std::string> detector;

@@ -16,6 +16,7 @@
 #include "core/optimize/adapt.h"
 #include "core/sizing/sizing_field.h"
 #include "core/study/first_mesh.h"
+#include "core/study/forecast.h"
 #include "core/study/join.h"
 #include "core/study/measure.h"
 #include "core/study/request.h"
@@ -74,7 +75,9 @@ class BodyLoop {
     outcome_.first_mesh_by = first->made_by;
     outcome_.notes.insert(outcome_.notes.end(), first->notes.begin(), first->notes.end());
     detector_ = make_detector(options_.detector, part_.surface);
-    return accept(std::move(first->mesh), start, progress.portion(0.7, 1));
+    if (Result<void> enough = look_ahead(first->mesh, progress.portion(0.7, 0.8)); !enough)
+      return enough;
+    return accept(std::move(first->mesh), start, progress.portion(0.8, 1));
   }
 
   bool done() const { return done_; }
@@ -89,6 +92,7 @@ class BodyLoop {
                                       kMinGuardShare * outcome_.chord_tolerance);
     params.seed = options_.seed;
     params.threads = options_.threads;
+    params.memory_limit = options_.memory;
     // Asked at every accepted point, a detector that can answer there keeps walls from blurring
     // into their neighbors: two rounds reach what the nodal field does not in six.
     MetricFunction<3> asked_at;
@@ -135,6 +139,23 @@ class BodyLoop {
   }
 
  private:
+  /// Forecasts the mesh of the end; a detector that needs a mesh forecasts nothing. Errors: memory
+  /// when the budget would not do, before anything is spent.
+  Result<void> look_ahead(const SimplexMesh<3>& first, const Progress& progress) {
+    const MetricFunction<3> natural = detector_->function(natural_);
+    if (!natural) return {};
+    Result<SizingForecast> made = forecast_body(study_, first, natural, sizing_, progress);
+    if (!made) return made.error();
+    forecast_ = made->corrected;
+    if (!options_.memory || forecast_.memory <= *options_.memory) return {};
+    const auto whole = [](double x) { return std::to_string(std::llround(x)); };
+    return Error{Code::memory,
+                 "Body \"" + part_.name + "\": about " + whole(forecast_.nodes) + " nodes and " +
+                     whole(forecast_.memory) + " MB are to be expected, above the " +
+                     whole(*options_.memory) + " MB allowed.",
+                 "Allow more memory, ask for fewer layers, or raise h_min or a size."};
+  }
+
   /// n, or less in the first iterations of a progressive run; the last two get n.
   int layers_of_iteration(int i) const {
     const bool early = options_.progressive && i + 1 < options_.iterations;
@@ -180,6 +201,8 @@ class BodyLoop {
     record->layers_by_nodes = average_layers(layer_numbers(next.mesh));
     record->iteration = static_cast<int>(outcome_.records.size());
     record->seconds = seconds_since(start);
+    record->forecast_nodes = forecast_.nodes;
+    record->forecast_memory = forecast_.memory;
 
     const double score = layers_score(record->layers, settings_.layers);
     if (!outcome_.records.empty()) {
@@ -238,6 +261,7 @@ class BodyLoop {
   std::unique_ptr<ThicknessDetector> detector_;
   SizingField sizing_;
   LayerCorrection correction_;
+  MeshForecast forecast_;
   MeshState current_, best_;
   double best_score_ = 0;
   std::size_t best_record_ = 0;

@@ -34,6 +34,7 @@ struct StudyOptions {
   std::uint64_t seed = 1;
   Detector detector = Detector::geometric;  ///< who finds the wall thickness
   bool progressive = false;  ///< asks 2, 3, .. n layers (4.4.2): less memory at the first peak
+  std::optional<double> memory{};  ///< MB an adaption may take; unset: no limit
 };
 
 /// One immutable value: what the user asked. The files are named, never held.
