@@ -175,6 +175,7 @@ StudyOptions read_options(const Json& json, std::string& complaint) {
   else
     m.complain("detector", "must be \"geometric\" or \"neighborhood\"");
   m.flag("progressive", options.progressive);
+  m.flag("until_settled", options.until_settled);
   m.finish();
   return options;
 }
@@ -391,6 +392,7 @@ std::string study_to_json(const Study& study) {
   options["seed"] = o.seed;
   options["detector"] = detector_name(o.detector);
   options["progressive"] = o.progressive;
+  options["until_settled"] = o.until_settled;
   for (const SizingObject& object : study.sizing) json["sizing"].push_back(json_of(object));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -16,7 +16,7 @@ Study full_study() {
   study.bodies[1].layers2 = 5;
   study.bodies[1].alpha2 = 9.5;
   study.bodies[1].layers3 = 2;
-  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood, true};
+  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood, true, false};
   return study;
 }
 
@@ -47,6 +47,7 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(back->options.seed, 12345678901234567890u);
   EXPECT_EQ(back->options.detector, Detector::neighborhood);
   EXPECT_TRUE(back->options.progressive);
+  EXPECT_FALSE(back->options.until_settled);
   EXPECT_EQ(study_to_json(*back), study_to_json(study));
 }
 
