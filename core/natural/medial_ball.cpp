@@ -12,6 +12,8 @@ constexpr double kOpposite = 0.26;  // hull nearer than this: medial, or a wedge
 constexpr double kGrowth = 0.3;     // of the ideal growth of the radius that a step must reach
 constexpr int kRounds = 60;
 constexpr int kTrials = 12;
+constexpr double kEdge = 0.1;    // of the skin: facets as near as this meet in the place asked
+constexpr double kDeep = 0.95;   // of the skin: as deep below a facet is well inside
 constexpr double kFloor = 1e-6;  // of the diagonal: smallest radius, where the body has none
 
 struct Start {
@@ -121,8 +123,9 @@ Vec<3> smallest_in_hull(const std::vector<Vec<3>>& points) {
   return best;
 }
 
-MedialBall climb_to_medial_ball(const Locator<3>& surface, const Vec<3>& x) {
-  const Start start = start_at(surface, x);
+namespace {
+
+MedialBall climb(const Locator<3>& surface, const Start& start) {
   const double floor = kFloor * surface.diagonal();
   MedialBall ball{start.x, std::sqrt(start.foot.distance2), start.foot.facet, 0};
   if (!start.inside || ball.radius < floor) {
@@ -180,6 +183,50 @@ MedialBall climb_to_medial_ball(const Locator<3>& surface, const Vec<3>& x) {
     ++ball.rounds;
   }
   return ball;
+}
+
+}  // namespace
+
+MedialBall climb_to_medial_ball(const Locator<3>& surface, const Vec<3>& x) {
+  return climb(surface, start_at(surface, x));
+}
+
+std::vector<MedialBall> medial_balls(const Locator<3>& surface, const Vec<3>& x) {
+  const double skin = kSkin * surface.diagonal();
+  const auto here = surface.nearest(x);
+  const Vec<3> foot = here->point;
+  std::vector<Nearest<3>> touched;
+  if (here->distance2 <= skin * skin) surface.all_within(foot, kEdge * skin, touched);
+  std::vector<std::pair<Vec<3>, std::int32_t>> sides;  // normals, each with a facet
+  for (const auto& t : touched) {
+    const Vec<3> n = surface.normal(t.facet);
+    if (std::none_of(sides.begin(), sides.end(),
+                     [&](const auto& side) { return side.first.dot(n) > kDistinct; }))
+      sides.emplace_back(n, t.facet);
+  }
+  if (sides.size() < 2) return {climb_to_medial_ball(surface, x)};
+
+  // Below each side, and as deep below those that meet it in a convex edge.
+  std::vector<Vec<3>> inward;
+  std::vector<MedialBall> balls;
+  for (const auto& [normal, facet] : sides) {
+    Vec<3> u = -normal;
+    for (const auto& [other, other_facet] : sides)
+      if (other_facet != facet &&
+          surface.nearest_on_facet(foot - skin * normal, other_facet).distance2 <
+              kDeep * kDeep * skin * skin)
+        u -= other;
+    if (std::any_of(inward.begin(), inward.end(),
+                    [&](const Vec<3>& v) { return (u - v).norm() < 1e-6; }))
+      continue;
+    const Vec<3> y = foot + skin * u;
+    const auto s = surface.signed_nearest(y);
+    if (s.distance > -kDeep * skin) continue;
+    inward.push_back(u);
+    balls.push_back(climb(surface, {y, s.foot, true}));
+  }
+  if (balls.size() < 2) return {climb_to_medial_ball(surface, x)};
+  return balls;
 }
 
 }  // namespace lamella
