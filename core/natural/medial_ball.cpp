@@ -197,25 +197,31 @@ std::vector<MedialBall> medial_balls(const Locator<3>& surface, const Vec<3>& x)
   const Vec<3> foot = here->point;
   std::vector<Nearest<3>> touched;
   if (here->distance2 <= skin * skin) surface.all_within(foot, kEdge * skin, touched);
-  std::vector<std::pair<Vec<3>, std::int32_t>> sides;  // normals, each with a facet
+  std::vector<Vec<3>> sides;         // normals
+  std::vector<std::size_t> side_of;  // [touched]
   for (const auto& t : touched) {
     const Vec<3> n = surface.normal(t.facet);
-    if (std::none_of(sides.begin(), sides.end(),
-                     [&](const auto& side) { return side.first.dot(n) > kDistinct; }))
-      sides.emplace_back(n, t.facet);
+    const auto known = std::find_if(sides.begin(), sides.end(),
+                                    [&](const Vec<3>& side) { return side.dot(n) > kDistinct; });
+    side_of.push_back(static_cast<std::size_t>(known - sides.begin()));
+    if (known == sides.end()) sides.push_back(n);
   }
   if (sides.size() < 2) return {climb_to_medial_ball(surface, x)};
 
   // Below each side, and as deep below those that meet it in a convex edge.
   std::vector<Vec<3>> inward;
   std::vector<MedialBall> balls;
-  for (const auto& [normal, facet] : sides) {
-    Vec<3> u = -normal;
-    for (const auto& [other, other_facet] : sides)
-      if (other_facet != facet &&
-          surface.nearest_on_facet(foot - skin * normal, other_facet).distance2 <
-              kDeep * kDeep * skin * skin)
-        u -= other;
+  std::vector<char> convex(sides.size());
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Vec<3> below = foot - skin * sides[i];
+    std::fill(convex.begin(), convex.end(), 0);
+    for (std::size_t t = 0; t < touched.size(); ++t)
+      if (side_of[t] != i &&
+          surface.nearest_on_facet(below, touched[t].facet).distance2 < kDeep * kDeep * skin * skin)
+        convex[side_of[t]] = 1;
+    Vec<3> u = -sides[i];
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      if (convex[k]) u -= sides[k];
     if (std::any_of(inward.begin(), inward.end(),
                     [&](const Vec<3>& v) { return (u - v).norm() < 1e-6; }))
       continue;
