@@ -213,7 +213,7 @@ class BodyLoop {
       const bool enough = sizing_.may_coarsen() || record->layers.places == 0 ||
                           record->layers.mean >= settings_.layers;
       converged_ = settled && enough;
-      done_ = settled && (score >= 1 || score < (1 + kGained) * best_score_);
+      done_ = options_.until_settled && settled && (score >= 1 || score < (1 + kGained) * best_score_);
     }
     // Among meshes as good the latest is the most conforming one. The first mesh has no layers to
     // speak of: anything adapted goes before it.

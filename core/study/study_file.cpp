@@ -176,6 +176,7 @@ StudyOptions read_options(const Json& json, std::string& complaint) {
     m.complain("detector", "must be \"geometric\" or \"neighborhood\"");
   m.flag("progressive", options.progressive);
   m.number("memory", options.memory);
+  m.flag("until_settled", options.until_settled);
   m.finish();
   return options;
 }
@@ -393,6 +394,7 @@ std::string study_to_json(const Study& study) {
   options["detector"] = detector_name(o.detector);
   options["progressive"] = o.progressive;
   if (o.memory) options["memory"] = *o.memory;
+  options["until_settled"] = o.until_settled;
   for (const SizingObject& object : study.sizing) json["sizing"].push_back(json_of(object));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

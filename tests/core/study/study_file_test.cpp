@@ -16,7 +16,7 @@ Study full_study() {
   study.bodies[1].layers2 = 5;
   study.bodies[1].alpha2 = 9.5;
   study.bodies[1].layers3 = 2;
-  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood, true, 512};
+  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood, true, false, 512};
   return study;
 }
 
@@ -48,6 +48,7 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(back->options.detector, Detector::neighborhood);
   EXPECT_TRUE(back->options.progressive);
   EXPECT_EQ(back->options.memory, study.options.memory);
+  EXPECT_FALSE(back->options.until_settled);
   EXPECT_EQ(study_to_json(*back), study_to_json(study));
 }
 
