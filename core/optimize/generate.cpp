@@ -2,10 +2,12 @@
 
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 #include "core/geometry/self_intersection.h"
 #include "core/optimize/certificate.h"
+#include "core/optimize/generate_peel.h"
 #include "core/optimize/generate_star.h"
 
 namespace lamella {
@@ -48,10 +50,17 @@ class Attempt {
   }
 
   /// True when no element is inverted or flat.
-  bool run(NodeId apex) {
+  bool run(NodeId apex, const Locator<3>* peeled) {
     constexpr double kPays = 0.05;  // share of the trouble a pass must remove
     constexpr int kFruitless = 12;  // passes without any gain before giving up
-    star_.start(*boundary_, apex);
+    if constexpr (D == 3) {
+      if (peeled)
+        star_.start(peel(*boundary_, mesh_, *peeled, random_.next(), progress_.portion(0, 0.2)), 0);
+      else
+        star_.start(*boundary_, apex);
+    } else {
+      star_.start(*boundary_, apex);
+    }
     const double first = mesh_.bad_count();
     double least = star_.inverted_volume();
     int fewest = mesh_.bad_count(), effort = 0, fruitless = 0;
@@ -234,6 +243,8 @@ Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface, const Genera
   };
   const auto deadline = Clock::now() + seconds(params.time_limit);
   Random random(params.seed);
+  std::optional<Locator<3>> locator;
+  if constexpr (D == 3) locator.emplace(surface);
   double least = std::numeric_limits<double>::infinity();
   Error stalled{Code::failed, "Algorithm 2.1 was given no time.", "Raise its time limit."};
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -245,7 +256,7 @@ Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface, const Genera
     // Half of what is left, so that a slow stall does not use up the others' time.
     const auto until = attempt + 1 == kAttempts ? deadline : now + (deadline - now) / 2;
     Attempt<D> work(boundary, surface, random.next(), until, progress);
-    if (work.run(apex)) {
+    if (work.run(apex, attempt % 2 == 0 && locator ? &*locator : nullptr)) {
       SimplexMesh<D> mesh = to_mesh(work.mesh(), surface);
       if (auto valid = certify<D>(mesh, surface); valid.ok())
         return mesh;
