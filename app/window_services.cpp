@@ -14,8 +14,8 @@ ui::Services window_services(const std::filesystem::path& sample_folder) {
   services.export_mesh = [](const std::filesystem::path& file, const MeshState& state,
                             const Study& study) -> Result<void> {
     std::vector<InputFile> inputs;
-    for (const std::string& input : study.inputs)
-      if (Result<InputFile> described = describe_input(input); described)
+    for (const StudyInput& input : study.inputs)
+      if (Result<InputFile> described = describe_input(input.file); described)
         inputs.push_back(*described);
     const Result<ExportCertificate> written = export_mesh(file, state, study, inputs);
     return written ? Result<void>() : Result<void>(written.error());

@@ -208,7 +208,7 @@ void Session::open_mesh(const std::filesystem::path& file) {
 }
 
 void Session::take_parts(std::vector<Part> parts, std::vector<PartSource> sources,
-                         std::vector<std::string> inputs, bool add) {
+                         std::vector<StudyInput> inputs, bool add) {
   std::vector<Part> all;
   Study study;
   if (add) {

@@ -120,7 +120,7 @@ class Session : public QObject {
   void begin(Activity activity, Worker::Job job);
   void report(const Error& error);
   void take_parts(std::vector<Part> parts, std::vector<PartSource> sources,
-                  std::vector<std::string> inputs, bool add);
+                  std::vector<StudyInput> inputs, bool add);
   /// The parts with surfaces of the study's tolerances; for use by the running job.
   Result<std::shared_ptr<const std::vector<Part>>> read_again(
       const std::vector<Part>& parts, const std::vector<PartSource>& sources,
