@@ -152,7 +152,8 @@ int play(ui::MainWindow& window, const Script& script) {
   }
   if (!script.section.isEmpty()) {
     // All the window for the view, and a smooth cut: layers are counted on it.
-    for (const ui::Act act : {ui::Act::show_bodies, ui::Act::show_results, ui::Act::crinkle})
+    for (const ui::Act act :
+         {ui::Act::show_study, ui::Act::show_properties, ui::Act::show_results, ui::Act::crinkle})
       window.actions()[act]->setChecked(false);
     wait_until([] { return true; });
     window.view().look_at_section();
@@ -172,6 +173,7 @@ int main(int argc, char** argv) {
   QSurfaceFormat::setDefaultFormat(ui::VtkView::format());
   QApplication application(argc, argv);
   QApplication::setApplicationName("lamella");
+  QApplication::setOrganizationName("lamella");
   QApplication::setApplicationVersion(QString::fromStdString(std::string(version())));
   QApplication::setDesktopFileName("org.lamella.Lamella");
 
@@ -180,8 +182,9 @@ int main(int argc, char** argv) {
       "Anisotropic tetrahedral meshes with n layers through every wall.");
   parser.addHelpOption();
   parser.addVersionOption();
-  parser.addPositionalArgument("files", "STEP or STL parts, or one mesh (.msh, .vtu, .mesh)",
-                               "[FILE...]");
+  parser.addPositionalArgument(
+      "files", "a study (.lamella), STEP or STL parts, or one mesh (.msh, .vtu, .mesh)",
+      "[FILE...]");
   const auto option = [&](const QString& name, const QString& text, const QString& value = {}) {
     QCommandLineOption o(name, text, value);
     o.setFlags(QCommandLineOption::HiddenFromHelp);

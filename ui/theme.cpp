@@ -91,4 +91,11 @@ QColor body_color(int index, const std::array<double, 3>& rgb) {
   return palette[static_cast<std::size_t>(index) % palette.size()];
 }
 
+QColor group_color(int index) {
+  static const std::array<QColor, 6> palette{QColor(0xe4, 0x57, 0x2e), QColor(0x2e, 0x86, 0xab),
+                                             QColor(0x9a, 0x4c, 0xb0), QColor(0x3c, 0x96, 0x3c),
+                                             QColor(0xd6, 0x9a, 0x00), QColor(0xc2, 0x2d, 0x6b)};
+  return palette[static_cast<std::size_t>(index) % palette.size()];
+}
+
 }  // namespace lamella::ui

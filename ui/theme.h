@@ -33,4 +33,7 @@ QIcon icon(const QString& name);
 /// negative for none.
 QColor body_color(int index, const std::array<double, 3>& rgb = {-1, -1, -1});
 
+/// Color of boundary group `index`.
+QColor group_color(int index);
+
 }  // namespace lamella::ui

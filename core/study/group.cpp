@@ -15,8 +15,8 @@ namespace {
 
 const std::array<std::string, 5> kKinds = {"other", "gate", "vent", "symmetry", "walls"};
 
-/// Radians by which a border may turn at a vertex that need not stay; the same as for a triangulated
-/// surface.
+/// Radians by which a border may turn at a vertex that need not stay; the same as for a
+/// triangulated surface.
 constexpr double kKink = 0.6;
 
 Error refuse(const BoundaryGroup& group, const std::string& finding, const std::string& hint) {
@@ -84,8 +84,8 @@ void sharpen_borders(const std::vector<std::int32_t>& facet_group, ReferenceSurf
     bool corner = along[v].size() != 2;
     if (!corner) {
       const Vec<3>& x = surface.points[v];
-      corner = angle_between(x - surface.points[along[v][0]], surface.points[along[v][1]] - x) >
-               kKink;
+      corner =
+          angle_between(x - surface.points[along[v][0]], surface.points[along[v][1]] - x) > kKink;
     }
     if (corner) surface.corners.push_back(v);
   }

@@ -45,8 +45,8 @@ struct FaceGroups {
   std::vector<std::int32_t> cad_face;    ///< [face] of the part
 };
 
-/// A surface on which every face belongs to one group or none: faces that a group covers in part are
-/// divided, the new ones behind the old, and borders of groups are feature edges.
+/// A surface on which every face belongs to one group or none: faces that a group covers in part
+/// are divided, the new ones behind the old, and borders of groups are feature edges.
 struct GroupedSurface {
   ReferenceSurface<3> surface;
   FaceGroups groups;

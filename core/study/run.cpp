@@ -100,8 +100,8 @@ class BodyLoop {
       };
     else
       for (Metric<3>& m : asked) m *= kAskedScale;
-    Result<Adapted<3>> adapted =
-        adapt<3>(current_.mesh, asked, &shape().surface, params, progress.portion(0, 0.8), asked_at);
+    Result<Adapted<3>> adapted = adapt<3>(current_.mesh, asked, &shape().surface, params,
+                                          progress.portion(0, 0.8), asked_at);
     if (!adapted) return give_up(adapted.error());
     if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return give_up(valid.error());

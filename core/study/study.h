@@ -50,7 +50,7 @@ struct StudyInput {
 /// A plane through which the window cuts the model open: what its normal points to is hidden.
 struct CutPlane {
   std::string name;
-  Vec<3> origin = Vec<3>::Zero();    ///< mm
+  Vec<3> origin = Vec<3>::Zero();   ///< mm
   Vec<3> normal = Vec<3>::UnitX();  ///< unit
   bool on = true;
 };
@@ -74,8 +74,8 @@ std::vector<SizingObject> sizing_of(const Study& study, const std::string& name)
 /// The groups on the part called `name`: those that name it, and those that name none.
 std::vector<BoundaryGroup> groups_of(const Study& study, const std::string& name);
 
-/// The parts of all inputs, in order, as a study calls them: names that were taken get a number, and
-/// the parts that are left out go.
+/// The parts of all inputs, in order, as a study calls them: names that were taken get a number,
+/// and the parts that are left out go.
 std::vector<Part> study_parts(std::vector<Part> parts, const std::vector<std::string>& left_out);
 
 }  // namespace lamella

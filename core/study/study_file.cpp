@@ -446,9 +446,8 @@ std::string study_to_json(const Study& study) {
   json["unit"] = "mm";
   json["inputs"] = Json::array();
   for (const StudyInput& input : study.inputs)
-    json["inputs"].push_back(input.unit == 1
-                                 ? Json(input.file)
-                                 : Json({{"file", input.file}, {"unit", input.unit}}));
+    json["inputs"].push_back(input.unit == 1 ? Json(input.file)
+                                             : Json({{"file", input.file}, {"unit", input.unit}}));
   if (!study.left_out.empty()) json["left_out"] = study.left_out;
   json["bodies"] = Json::array();
   for (const BodySettings& body : study.bodies) {
@@ -530,6 +529,22 @@ Result<Study> read_study(const std::filesystem::path& file) {
 
 Result<void> write_study(const Study& study, const std::filesystem::path& file) {
   return write_file(file, study_to_json(study));
+}
+
+Result<void> save_study(const Study& study, const std::filesystem::path& file) {
+  const std::string text = study_to_json(study);
+  if (std::error_code ec; std::filesystem::is_regular_file(file, ec)) {
+    Result<std::string> before = read_file(file);
+    if (before && *before != text)
+      if (Result<void> kept = write_file(file.string() + ".bak", *before); !kept) return kept;
+  }
+  if (Result<void> written = write_file(file, text); !written) return written;
+  Result<Study> back = read_study(file);
+  if (!back) return back.error();
+  if (study_to_json(*back) != text)
+    return Error{Code::failed, "\"" + file.string() + "\" does not read back as written.",
+                 "Save it elsewhere, and report this."};
+  return {};
 }
 
 std::vector<std::filesystem::path> input_files(const Study& study,

@@ -227,6 +227,12 @@ void VtkView::fit(const std::array<double, 6>& bounds) {
   update();
 }
 
+void VtkView::zoom_to(const QRectF& box) {
+  pan(QPointF(width() / 2.0, height() / 2.0) - box.center());
+  zoom(std::min(width() / box.width(), height() / box.height()),
+       QPointF(width() / 2.0, height() / 2.0));
+}
+
 void VtkView::set_perspective(bool on) {
   vtk_->renderer->GetActiveCamera()->SetParallelProjection(!on);
   vtk_->renderer->ResetCameraClippingRange();

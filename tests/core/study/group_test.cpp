@@ -23,8 +23,7 @@ Meshers real() { return {std::shared_ptr<const VolumeMesher>(topological_mesher(
 
 double area_of(const ReferenceSurface<3>& s, std::int32_t facet) {
   const auto& f = s.facets[static_cast<std::size_t>(facet)];
-  return 0.5 *
-         (s.points[f[1]] - s.points[f[0]]).cross(s.points[f[2]] - s.points[f[0]]).norm();
+  return 0.5 * (s.points[f[1]] - s.points[f[0]]).cross(s.points[f[2]] - s.points[f[0]]).norm();
 }
 
 double area_of(const ReferenceSurface<3>& s, const std::vector<std::int32_t>& facets) {

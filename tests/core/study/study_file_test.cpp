@@ -73,6 +73,19 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(study_to_json(*back), study_to_json(study));
 }
 
+TEST(StudyFile, SavingKeepsWhatWasThereAsABackup) {
+  const test::TemporaryFolder folder;
+  Study study = full_study();
+  ASSERT_TRUE(save_study(study, folder / "s.lamella"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "s.lamella.bak"));
+  const std::string first = study_to_json(study);
+  study.options.iterations = 2;
+  ASSERT_TRUE(save_study(study, folder / "s.lamella"));
+  EXPECT_EQ(*read_file(folder / "s.lamella.bak"), first);
+  EXPECT_EQ(*read_file(folder / "s.lamella"), study_to_json(study));
+  EXPECT_FALSE(save_study(study, folder / "nowhere" / "s.lamella"));
+}
+
 /// One object of each shape and each thing to ask.
 Study sized_study() {
   Study study;
