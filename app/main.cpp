@@ -4,8 +4,10 @@
 #include <QCommandLineParser>
 #include <QEventLoop>
 #include <QPainter>
+#include <QSettings>
 #include <QStandardPaths>
 #include <QSurfaceFormat>
+#include <QTabWidget>
 #include <QTimer>
 #include <algorithm>
 #include <cmath>
@@ -21,6 +23,7 @@
 #include "ui/theme.h"
 #include "ui/views/model_view.h"
 #include "ui/views/vtk_view.h"
+#include "ui/window_tools.h"
 
 namespace lamella {
 namespace {
@@ -33,6 +36,7 @@ struct Script {
   bool flat = false;   ///< the cut goes through elements
   QString near;        ///< "x,y,z,r": brings what is within r mm of a point close
   QString color;       ///< body, quality, thickness or layers
+  int tab = 0;         ///< of the results
   QString screenshot;  ///< picture of the window
   QString section;     ///< picture of the 3D view, cut open
   bool any() const { return run || !screenshot.isEmpty() || !section.isEmpty(); }
@@ -146,6 +150,7 @@ int play(ui::MainWindow& window, const Script& script) {
   if (const QStringList at = script.near.split(','); at.size() == 4)
     window.view().look_near(Vec<3>(at[0].toDouble(), at[1].toDouble(), at[2].toDouble()),
                             at[3].toDouble());
+  if (auto* tabs = window.findChild<QTabWidget*>()) tabs->setCurrentIndex(script.tab);
   if (!script.screenshot.isEmpty()) {
     wait_until([] { return true; });
     saved = save(window.grab().toImage(), script.screenshot);
@@ -196,6 +201,8 @@ int main(int argc, char** argv) {
   option("flat", "the section cuts through elements");
   option("near", "brings what is within R of a point close", "X,Y,Z,R");
   option("color", "body, quality, thickness or layers", "FIELD");
+  option("dark", "the dark theme");
+  option("tab", "tab of the results, from 0", "K");
   option("screenshot", "picture of the window, then leave", "FILE");
   option("section", "picture of a section, then leave", "FILE");
   parser.process(application);
@@ -207,13 +214,15 @@ int main(int argc, char** argv) {
   script.flat = parser.isSet("flat");
   script.near = parser.value("near");
   script.color = parser.value("color");
+  script.tab = parser.value("tab").toInt();
   script.screenshot = parser.value("screenshot");
   script.section = parser.value("section");
 
-  ui::apply_theme(application);
+  ui::apply_theme(application, QSettings().value("dark", false).toBool() || parser.isSet("dark"));
   ui::MainWindow window(window_services(
       QStandardPaths::writableLocation(QStandardPaths::CacheLocation).toStdString() + "/samples"));
   window.show();
   window.open_files(parser.positionalArguments());
+  if (!script.any() && parser.positionalArguments().isEmpty()) window.tools().offer_recovery();
   return script.any() ? play(window, script) : QApplication::exec();
 }

@@ -25,13 +25,17 @@
 #include "ui/panels/convergence_panel.h"
 #include "ui/panels/log_panel.h"
 #include "ui/panels/properties_panel.h"
+#include "ui/panels/quality_panel.h"
 #include "ui/panels/report_panel.h"
 #include "ui/panels/study_panel.h"
 #include "ui/panels/welcome.h"
 #include "ui/session/forecaster.h"
+#include "ui/session/recent_files.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 #include "ui/views/model_view.h"
+#include "ui/views/vtk_view.h"
+#include "ui/window_tools.h"
 
 namespace lamella::ui {
 namespace {
@@ -68,6 +72,7 @@ MainWindow::MainWindow(Services services, QWidget* parent)
   setAcceptDrops(true);
   resize(1440, 920);
   make_body();
+  tools_ = new WindowTools(*this);
   make_menus();
   make_tool_bar();
   make_status_bar();
@@ -111,6 +116,10 @@ void MainWindow::make_body() {
   results_ = new QTabWidget;
   results_->setDocumentMode(true);
   results_->addTab(new ConvergencePanel(*session_), tr("Convergence"));
+  auto* quality = new QualityPanel(*session_);
+  results_->addTab(quality, tr("Quality"));
+  connect(quality, &QualityPanel::range_changed, this,
+          [this, quality] { view_->set_quality_range(quality->range()); });
   results_->addTab(new ReportPanel(*session_), tr("Report"));
   auto* log = new LogPanel;
   results_->addTab(log, tr("Log"));
@@ -151,6 +160,7 @@ void MainWindow::make_menus() {
   constexpr Act line = Act::count;
   fill(tr("&File"), {Act::open, Act::add, line, Act::save, Act::save_as, line, Act::export_mesh,
                      Act::save_picture, Act::copy_command, line, Act::preferences, Act::quit});
+  menuBar()->actions().front()->menu()->insertMenu((*actions_)[Act::add], tools_->recent_menu());
   fill(tr("&Edit"), {Act::undo, Act::redo, line, Act::remove});
   fill(tr("&Study"),
        {Act::add_group, Act::pick_faces, Act::pick_flood, line, Act::correct_near,
@@ -434,6 +444,7 @@ void MainWindow::open_files(const QStringList& files, bool add) {
   banner_->hide();
   if (!add && !may_drop()) return;
   folder_ = QFileInfo(files.front()).absolutePath();
+  for (const QString& file : files) remember_file(file);
   if (is_study(files.front())) {
     session_->open_study(std::filesystem::absolute(files.front().toStdString()));
     return;
@@ -538,12 +549,24 @@ void MainWindow::ask_export() {
 }
 
 void MainWindow::ask_picture() {
+  const QSize seen = view_->vtk_view() ? view_->vtk_view()->size() * devicePixelRatioF() : QSize();
+  const auto wide = [&](int width) {
+    return QSize(width, seen.width() > 0 ? width * seen.height() / seen.width() : width);
+  };
+  const QSize sizes[] = {seen, wide(1920), wide(3840), wide(7680)};
+  QStringList kinds;
+  for (const QSize& size : sizes)
+    kinds << tr("PNG, %1 × %2 pixels (*.png)").arg(size.width()).arg(size.height());
   const QString name = QString::fromStdString(session_->study().name) + ".png";
-  const QString file = QFileDialog::getSaveFileName(this, tr("Save picture"),
-                                                    folder_.isEmpty() ? name : folder_ + "/" + name,
-                                                    tr("PNG picture (*.png)"));
+  QString kind;
+  QString file = QFileDialog::getSaveFileName(this, tr("Save picture"),
+                                              folder_.isEmpty() ? name : folder_ + "/" + name,
+                                              kinds.join(";;"), &kind);
   if (file.isEmpty()) return;
-  if (view_->picture().save(file)) {
+  if (QFileInfo(file).suffix().isEmpty()) file += ".png";
+  const auto chosen = std::max<qsizetype>(0, kinds.indexOf(kind));
+  const QImage image = chosen == 0 ? view_->picture() : view_->picture(sizes[chosen]);
+  if (image.save(file)) {
     banner_->show_message(Banner::Kind::done, tr("Picture written"), file);
   } else {
     banner_->show_message(Banner::Kind::error, tr("%1 could not be written.").arg(file),

@@ -20,6 +20,7 @@ class PropertiesPanel;
 class Session;
 class StudyPanel;
 class Welcome;
+class WindowTools;
 
 /// The window: the study on the left, the model in the middle with results below it, and the
 /// properties of what is selected on the right.
@@ -35,6 +36,7 @@ class MainWindow : public QMainWindow {
   ModelView& view() { return *view_; }
   Banner& banner() { return *banner_; }
   Forecaster& forecaster() { return *forecaster_; }
+  WindowTools& tools() { return *tools_; }
 
   /// Opens a study, parts (STEP, STL) or one mesh, by extension; as the menu, a drop and the
   /// command line do.
@@ -71,6 +73,7 @@ class MainWindow : public QMainWindow {
   Session* session_;
   Forecaster* forecaster_;
   Actions* actions_;
+  WindowTools* tools_ = nullptr;
   ModelView* view_ = nullptr;
   Banner* banner_ = nullptr;
   Welcome* welcome_ = nullptr;

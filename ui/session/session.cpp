@@ -1,5 +1,6 @@
 #include "ui/session/session.h"
 
+#include <QSettings>
 #include <algorithm>
 
 #include "core/study/measure.h"
@@ -60,6 +61,9 @@ std::string asked(Study study) {
 
 Session::Session(Services services, QObject* parent)
     : QObject(parent), services_(std::move(services)) {
+  Study study;
+  study.options.threads = QSettings().value("threads", 0).toInt();
+  study_ = std::make_shared<const Study>(std::move(study));
   connect(&worker_, &Worker::progressed, this, [this](double fraction, const QString& phase) {
     const double elapsed = static_cast<double>(clock_.elapsed()) / 1000;
     const bool known = fraction > 0.02 && elapsed > 1;

@@ -3,16 +3,11 @@
 #include <vtkCamera.h>
 #include <vtkRenderer.h>
 
-#include <QComboBox>
-#include <QDoubleSpinBox>
-#include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
 #include <QMenu>
 #include <QMouseEvent>
-#include <QSlider>
 #include <QTimer>
-#include <QToolButton>
 #include <cmath>
 
 #include "core/study/study_file.h"
@@ -24,49 +19,22 @@
 #include "ui/views/pick_tools.h"
 #include "ui/views/size_shapes.h"
 #include "ui/views/size_tool.h"
+#include "ui/views/view_bar.h"
 #include "ui/views/vtk_view.h"
 
 namespace lamella::ui {
-namespace {
-
-constexpr int slider_steps = 1000;
-
-QToolButton* button(QAction* action) {
-  auto* b = new QToolButton;
-  b->setDefaultAction(action);
-  b->setIconSize(QSize(20, 20));
-  b->setAutoRaise(true);
-  return b;
-}
-
-QFrame* separator() {
-  auto* line = new QFrame;
-  line->setFixedSize(1, 20);
-  line->setStyleSheet("background: #dde2e8; border: none;");
-  return line;
-}
-
-/// Smallest and largest distance of the box's corners along the normal.
-std::pair<double, double> range_along(const std::array<double, 6>& box, const Vec<3>& normal) {
-  double low = 0;
-  double high = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double a = normal[axis] * box[2 * axis];
-    const double b = normal[axis] * box[2 * axis + 1];
-    low += std::min(a, b);
-    high += std::max(a, b);
-  }
-  return {low, high};
-}
-
-}  // namespace
 
 ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
     : QWidget(parent), session_(session), actions_(actions) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(0);
-  layout->addWidget(make_bar());
+  bar_ = new ViewBar(actions);
+  layout->addWidget(bar_);
+  connect(bar_, &ViewBar::color_changed, this, &ModelView::follow_study);
+  connect(bar_, &ViewBar::slide_started, this, [this] { drag_merge_ = session_.new_merge(); });
+  connect(bar_, &ViewBar::slid, this, [this](double at) { slide_to(at, drag_merge_); });
+  connect(bar_, &ViewBar::moved, this, [this](double at) { slide_to(at, 0); });
   auto* frame = new QFrame;
   frame->setObjectName("view_frame");
   auto* inner = new QVBoxLayout(frame);
@@ -115,101 +83,6 @@ ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
 ModelView::~ModelView() {
   // The scene's actors hold OpenGL objects of the view's context.
   if (view_) view_->set_mouse_filter({});
-}
-
-QWidget* ModelView::make_bar() {
-  auto* bar = new QFrame;
-  bar->setObjectName("view_bar");
-  auto* rows = new QVBoxLayout(bar);
-  rows->setContentsMargins(10, 5, 10, 5);
-  rows->setSpacing(4);
-  auto* row = new QHBoxLayout;
-  row->setSpacing(6);
-  rows->addLayout(row);
-  auto* by = new QLabel(tr("Color by"));
-  by->setObjectName("soft");
-  row->addWidget(by);
-  colors_ = new QComboBox;
-  colors_->setObjectName("color_by");
-  colors_->addItem(tr("Body"), int(ColorBy::body));
-  colors_->addItem(tr("Quality c(T)"), int(ColorBy::quality));
-  colors_->addItem(tr("Wall thickness"), int(ColorBy::thickness));
-  colors_->addItem(tr("Layers measured"), int(ColorBy::layers));
-  colors_->setMinimumWidth(140);
-  row->addWidget(colors_);
-  row->addWidget(button(actions_[Act::edges]));
-  row->addWidget(button(actions_[Act::features]));
-  row->addWidget(separator());
-  auto* cut = button(actions_[Act::section]);
-  cut->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  row->addWidget(cut);
-
-  section_bar_ = new QWidget;
-  auto* tools = new QHBoxLayout(section_bar_);
-  tools->setContentsMargins(0, 0, 0, 0);
-  tools->setSpacing(3);
-  const std::pair<Act, const char*> axes[] = {
-      {Act::section_x, "X"}, {Act::section_y, "Y"}, {Act::section_z, "Z"}};
-  for (const auto& [act, letter] : axes) {
-    auto* b = button(actions_[act]);
-    b->setToolButtonStyle(Qt::ToolButtonTextOnly);
-    actions_[act]->setIconText(letter);
-    b->setMinimumWidth(26);
-    tools->addWidget(b);
-  }
-  slider_ = new QSlider(Qt::Horizontal);
-  slider_->setObjectName("section_position");
-  slider_->setRange(0, slider_steps);
-  slider_->setMinimumWidth(90);
-  tools->addSpacing(4);
-  tools->addWidget(slider_, 1);
-  tools->addSpacing(4);
-  position_ = new QDoubleSpinBox;
-  position_->setDecimals(2);
-  position_->setSuffix(tr(" mm"));
-  position_->setRange(-1e6, 1e6);
-  position_->setKeyboardTracking(false);
-  position_->setMinimumWidth(100);
-  tools->addWidget(position_);
-  tools->addWidget(button(actions_[Act::flip]));
-  tools->addWidget(button(actions_[Act::add_cut]));
-  tools->addWidget(button(actions_[Act::crinkle]));
-  rows->addWidget(section_bar_);
-  section_bar_->hide();
-  row->addStretch(1);
-
-  auto* views = new QToolButton;
-  views->setIcon(actions_[Act::view_iso]->icon());
-  views->setIconSize(QSize(20, 20));
-  views->setAutoRaise(true);
-  views->setToolTip(tr("Standard views (keys 0 to 6)"));
-  views->setPopupMode(QToolButton::InstantPopup);
-  auto* menu = new QMenu(views);
-  for (int a = int(Act::view_iso); a <= int(Act::view_bottom); ++a)
-    menu->addAction(actions_[Act(a)]);
-  views->setMenu(menu);
-  row->addWidget(button(actions_[Act::measure]));
-  row->addWidget(button(actions_[Act::ellipsoid]));
-  row->addWidget(separator());
-  row->addWidget(button(actions_[Act::box_zoom]));
-  row->addWidget(views);
-  row->addWidget(button(actions_[Act::fit]));
-  row->addWidget(button(actions_[Act::perspective]));
-
-  connect(colors_, &QComboBox::currentIndexChanged, this, [this] {
-    if (!scene_) return;
-    follow_study();
-    refresh();
-  });
-  connect(slider_, &QSlider::sliderPressed, this, [this] { drag_merge_ = session_.new_merge(); });
-  connect(slider_, &QSlider::valueChanged, this, [this](int value) {
-    if (!section() || !scene_) return;
-    const auto [low, high] = range_along(scene_->bounds(), section()->normal);
-    slide_to(low + (high - low) * value / slider_steps, drag_merge_);
-  });
-  connect(position_, &QDoubleSpinBox::valueChanged, this,
-          [this](double value) { slide_to(value, 0); });
-  return bar;
 }
 
 void ModelView::connect_session() {
@@ -486,11 +359,9 @@ void ModelView::refresh() {
   view_->update();
 }
 
-void ModelView::set_color_by(ColorBy color_by) {
-  colors_->setCurrentIndex(colors_->findData(int(color_by)));
-}
+void ModelView::set_color_by(ColorBy color_by) { bar_->set_color_by(color_by); }
 
-ColorBy ModelView::color_by() const { return ColorBy(colors_->currentData().toInt()); }
+ColorBy ModelView::color_by() const { return bar_->color_by(); }
 
 Section ModelView::section_across(int axis) const {
   const auto b = scene_->bounds();
@@ -590,18 +461,7 @@ void ModelView::follow_cuts() {
     if (cut.on) on.push_back({cut.origin, cut.normal});
   const auto handle = section();
   tool_->set(handle);
-  section_bar_->setVisible(handle.has_value());
-  {
-    const QSignalBlocker block(actions_[Act::section]);
-    actions_[Act::section]->setChecked(handle.has_value());
-  }
-  // What shows the action must follow, although nothing was toggled.
-  Q_EMIT actions_[Act::section]->changed();
-  actions_[Act::flip]->setEnabled(handle.has_value());
-  if (!handle)
-    for (const Act act : {Act::section_x, Act::section_y, Act::section_z})
-      actions_[act]->setChecked(false);
-  update_section_controls();
+  bar_->show_section(handle, scene_->bounds());
   if (on.size() == sections_.size() &&
       std::equal(on.begin(), on.end(), sections_.begin(), [](const Section& a, const Section& b) {
         return a.origin == b.origin && a.normal == b.normal;
@@ -624,19 +484,27 @@ void ModelView::apply_sections() {
   });
 }
 
-void ModelView::update_section_controls() {
-  const std::optional<Section> now = section();
-  if (!now) return;
-  for (int axis = 0; axis < 3; ++axis)
-    actions_[Act(int(Act::section_x) + axis)]->setChecked(std::abs(now->normal[axis]) > 0.9999);
-  const QSignalBlocker block_slider(slider_);
-  const QSignalBlocker block_position(position_);
-  const auto [low, high] = range_along(scene_->bounds(), now->normal);
-  const double at = now->origin.dot(now->normal);
-  position_->setSingleStep(std::max(0.01, (high - low) / 100));
-  position_->setValue(at);
-  if (high > low)
-    slider_->setValue(static_cast<int>(std::lround((at - low) / (high - low) * slider_steps)));
+void ModelView::refresh_theme() {
+  if (!view_) return;
+  view_->refresh_theme();
+  view_->update();
+  overlay_->update();
+}
+
+void ModelView::set_quality_range(const std::optional<std::pair<double, double>>& range) {
+  if (!scene_) return;
+  scene_->set_quality_range(range);
+  refresh();
+}
+
+QImage ModelView::picture(const QSize& pixels) {
+  if (!view_) return {};
+  const QSize before = view_->size();
+  view_->resize(pixels / view_->devicePixelRatioF());
+  picture();  // so that what lies over the picture follows the new size
+  const QImage image = picture();
+  view_->resize(before);
+  return image;
 }
 
 void ModelView::fit() {

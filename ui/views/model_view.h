@@ -9,12 +9,9 @@
 #include "ui/views/scene.h"
 #include "ui/views/section_tool.h"
 
-class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QMouseEvent;
 class QKeyEvent;
-class QSlider;
 
 namespace lamella::ui {
 
@@ -24,6 +21,7 @@ class PickTools;
 class Session;
 class SizeShapes;
 class SizeTool;
+class ViewBar;
 class VtkView;
 
 /// The 3D view of the session with its bar: coloring, edges, section and standard views.
@@ -36,6 +34,8 @@ class ModelView : public QWidget {
 
   /// The picture as seen, with legend and scale; without the section's handle.
   QImage picture();
+  /// The same, so many pixels wide and high.
+  QImage picture(const QSize& pixels);
   /// The cut that has the handle, if it is on.
   std::optional<Section> section() const;
   /// Moves that cut, or adds one; nothing turns all cuts off.
@@ -43,6 +43,10 @@ class ModelView : public QWidget {
   void set_color_by(ColorBy color_by);
   ColorBy color_by() const;
   void fit();
+  /// Draws with the colors of the theme.
+  void refresh_theme();
+  /// Draws only elements with a quality in the range; nothing: all.
+  void set_quality_range(const std::optional<std::pair<double, double>>& range);
   /// Looks along `direction`, `up` upward.
   void look(const Vec<3>& direction, const Vec<3>& up);
   void look_isometric();
@@ -58,7 +62,6 @@ class ModelView : public QWidget {
   void keyPressEvent(QKeyEvent* event) override;
 
  private:
-  QWidget* make_bar();
   void connect_session();
   void connect_actions();
   void follow_parts();
@@ -73,7 +76,6 @@ class ModelView : public QWidget {
   void follow_sizes();
   void follow_mode();
   void apply_sections();
-  void update_section_controls();
   void start_section(int axis);
   void add_section();
   Section section_across(int axis) const;
@@ -89,10 +91,7 @@ class ModelView : public QWidget {
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<SectionTool> tool_;
   std::optional<QPointF> pressed_;  // where a click may have begun
-  QComboBox* colors_ = nullptr;
-  QWidget* section_bar_ = nullptr;
-  QSlider* slider_ = nullptr;
-  QDoubleSpinBox* position_ = nullptr;
+  ViewBar* bar_ = nullptr;
   std::unique_ptr<PickTools> picks_;
   std::unique_ptr<SizeShapes> shapes_;
   std::unique_ptr<SizeTool> size_tool_;

@@ -102,7 +102,9 @@ void Overlay::paint_legend(QPainter& painter) const {
   const int height = legend_.map.stops.empty() ? 58 : legend_.missing.isEmpty() ? 68 : 88;
   const QRectF box(margin, margin, bar_width + 28, height);
   painter.setPen(QPen(theme::border, 1));
-  painter.setBrush(QColor(255, 255, 255, 232));
+  QColor paper = theme::panel;
+  paper.setAlpha(232);
+  painter.setBrush(paper);
   painter.drawRoundedRect(box, 8, 8);
   painter.setPen(theme::text);
   QFont bold = font();

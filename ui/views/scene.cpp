@@ -15,7 +15,6 @@
 #include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
 #include <vtkTypeInt64Array.h>
@@ -29,6 +28,7 @@
 
 #include "ui/theme.h"
 #include "ui/views/mesh_data.h"
+#include "ui/views/scene_actors.h"
 
 namespace lamella::ui {
 namespace {
@@ -38,51 +38,6 @@ constexpr const char* node_array = "node";
 constexpr const char* thickness_array = "thickness";
 constexpr const char* layers_array = "layers";
 constexpr const char* quality_array = "quality";
-
-void set_color(vtkProperty& property, const QColor& color) {
-  property.SetColor(color.redF(), color.greenF(), color.blueF());
-}
-
-void style_lines(vtkActor& actor, vtkPolyDataMapper& mapper) {
-  mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-1, -8);
-  actor.SetMapper(&mapper);
-  actor.GetProperty()->SetColor(0.10, 0.15, 0.21);
-  actor.GetProperty()->SetLineWidth(1.6F);
-  actor.GetProperty()->LightingOff();
-}
-
-/// Paler and warmer: the inside of a cut body.
-QColor inside_color(const QColor& c) {
-  return {(c.red() + 2 * 255) / 3, (c.green() + 2 * 250) / 3, (c.blue() + 2 * 238) / 3};
-}
-
-struct PartActors {
-  std::string name;
-  QColor color;
-  std::vector<std::int32_t> facet_face;
-  vtkSmartPointer<vtkActor> surface;
-  vtkSmartPointer<vtkActor> features;
-};
-
-/// One plane of the section.
-struct Cut {
-  vtkSmartPointer<vtkPlane> keep = vtkSmartPointer<vtkPlane>::New();   // its negative side
-  vtkSmartPointer<vtkPlane> clip = vtkSmartPointer<vtkPlane>::New();   // mappers keep the positive
-  vtkSmartPointer<vtkActor> actor = vtkSmartPointer<vtkActor>::New();  // through elements
-  vtkSmartPointer<vtkPolyDataMapper> mapper = vtkSmartPointer<vtkPolyDataMapper>::New();
-  double edge = 0;  // typical of what is drawn, mm; 0: unknown
-};
-
-void style_mesh(vtkActor& actor, vtkPolyDataMapper& mapper) {
-  actor.SetMapper(&mapper);
-  vtkProperty* property = actor.GetProperty();
-  property->SetInterpolationToFlat();
-  property->SetAmbient(0.42);
-  property->SetDiffuse(0.68);
-  property->SetEdgeColor(0.22, 0.28, 0.35);
-  property->SetLineWidth(1);
-  actor.VisibilityOff();
-}
 
 }  // namespace
 
@@ -523,37 +478,7 @@ void Scene::set_parts(const std::vector<Part>& parts, const std::vector<QColor>&
   impl_->parts.clear();
   impl_->visible.assign(parts.size(), true);
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    PartActors actors;
-    actors.name = parts[k].name;
-    actors.color = colors[k];
-    actors.facet_face = parts[k].surface.facet_face;
-    vtkNew<vtkPolyDataNormals> normals;
-    normals->SetInputData(surface_data(parts[k].surface));
-    normals->ConsistencyOff();
-    normals->SplittingOn();
-    normals->SetFeatureAngle(32);
-    normals->Update();
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(normals->GetOutput());
-    actors.surface = vtkSmartPointer<vtkActor>::New();
-    actors.surface->SetMapper(mapper);
-    vtkProperty* property = actors.surface->GetProperty();
-    set_color(*property, colors[k]);
-    property->SetAmbient(0.40);
-    property->SetDiffuse(0.70);
-    property->SetSpecular(0.08);
-    property->SetSpecularPower(20);
-    property->SetEdgeColor(0.3, 0.36, 0.42);
-    vtkNew<vtkProperty> back;
-    set_color(*back, inside_color(colors[k]));
-    back->SetAmbient(0.6);
-    back->SetDiffuse(0.4);
-    actors.surface->SetBackfaceProperty(back);
-
-    vtkNew<vtkPolyDataMapper> lines;
-    lines->SetInputData(feature_data(parts[k].surface));
-    actors.features = vtkSmartPointer<vtkActor>::New();
-    style_lines(*actors.features, *lines);
+    PartActors actors = part_actors(parts[k], colors[k]);
     impl_->renderer.AddActor(actors.surface);
     impl_->renderer.AddActor(actors.features);
     impl_->parts.push_back(std::move(actors));
@@ -652,9 +577,7 @@ void Scene::set_colors(const std::vector<QColor>& colors) {
     PartActors& part = impl_->parts[k];
     if (part.color == colors[k]) continue;
     changed = true;
-    part.color = colors[k];
-    set_color(*part.surface->GetProperty(), colors[k]);
-    set_color(*part.surface->GetBackfaceProperty(), inside_color(colors[k]));
+    set_part_color(part, colors[k]);
   }
   if (changed) impl_->recolor();
 }
@@ -704,15 +627,7 @@ void Scene::set_sections(const std::vector<Section>& sections) {
   for (const Cut& cut : impl_->cuts) impl_->renderer.RemoveActor(cut.actor);
   impl_->cuts.clear();
   for (const Section& section : sections) {
-    Cut cut;
-    Vec<3> origin = section.origin;
-    Vec<3> normal = section.normal;
-    cut.keep->SetOrigin(origin.data());
-    cut.keep->SetNormal(normal.data());
-    normal = -normal;
-    cut.clip->SetOrigin(origin.data());
-    cut.clip->SetNormal(normal.data());
-    style_mesh(*cut.actor, *cut.mapper);
+    Cut cut = make_cut(section.origin, section.normal);
     impl_->renderer.AddActor(cut.actor);
     impl_->cuts.push_back(std::move(cut));
   }

@@ -48,6 +48,8 @@ class VtkView : public QOpenGLWidget {
   void zoom_to(const QRectF& box);
   void set_perspective(bool on);
   bool perspective() const;
+  /// Background in the colors of the theme.
+  void refresh_theme();
 
   /// Sees mouse events before the camera does; returns true to keep one for itself.
   using MouseFilter = std::function<bool(QMouseEvent*)>;
