@@ -13,6 +13,7 @@
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
+#include <QTabBar>
 #include <QTabWidget>
 #include <QToolBar>
 #include <QToolButton>
@@ -115,6 +116,7 @@ void MainWindow::make_body() {
   inner->setContentsMargins(1, 1, 1, 1);
   results_ = new QTabWidget;
   results_->setDocumentMode(true);
+  results_->tabBar()->setDrawBase(false);
   results_->addTab(new ConvergencePanel(*session_), tr("Convergence"));
   auto* quality = new QualityPanel(*session_);
   results_->addTab(quality, tr("Quality"));
