@@ -61,6 +61,7 @@ Result<Request> request_of(const MeshCommand& c) {
   if (c.threads) o.threads = *c.threads;
   if (c.seed) o.seed = *c.seed;
   if (c.progressive) o.progressive = true;
+  if (c.memory) o.memory = c.memory;
   if (c.detector) o.detector = detector_from_name(*c.detector).value_or(o.detector);
   Result<std::vector<SizingObject>> sizing = sizing_of(c);
   if (!sizing) return sizing.error();
@@ -91,6 +92,10 @@ void apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study
 }
 
 void tell_iteration(const IterationRecord& r, Console& console) {
+  if (r.iteration == 0 && r.forecast_nodes > 0)
+    console.say("about " + grouped(static_cast<std::size_t>(r.forecast_nodes)) + " nodes and " +
+                grouped(static_cast<std::size_t>(r.forecast_memory) + 1) +
+                " MB are to be expected");
   if (r.iteration == 0)
     console.say(" it      nodes   elements   layers mean     5 %   quality mean   worst    time");
   char line[160];

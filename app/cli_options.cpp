@@ -231,6 +231,10 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->check(CLI::Range(1, 1000));
   m->add_flag("--progressive", mesh.progressive,
               "Ask for 2, 3, .. n layers in the first iterations, which lowers the peak of memory");
+  m->add_option("--memory", mesh.memory,
+                "Memory an adaption may take, MB; status 6 when more is needed [no limit]")
+      ->option_text("MB")
+      ->check(CLI::PositiveNumber);
   m->add_option("--h-min", mesh.h_min, "Smallest size, mm [1/1000 of the body's diagonal]")
       ->option_text("X")
       ->check(CLI::PositiveNumber);

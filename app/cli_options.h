@@ -24,6 +24,7 @@ struct MeshCommand {
   std::vector<std::string> groups;
   bool forecast = false;  ///< tell it, mesh nothing
   bool progressive = false;
+  std::optional<double> memory;
   std::optional<std::string> unit;
   std::string mesher = "auto";
   std::optional<std::string> detector;

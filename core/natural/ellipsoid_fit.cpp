@@ -5,11 +5,17 @@
 namespace lamella {
 namespace {
 
-constexpr int kPairs = 64;       // of opposite rays
+constexpr int kPairs = 40;       // of opposite rays
 constexpr int kPlanePairs = 12;  // of opposite rays in the plane of the long axes
 constexpr double kNear = 8;  // the first fit cuts its rays here: what is longer is measured again
 constexpr double kFar = 20;  // rays and axes end at so many radii
+constexpr double kThin = 3;  // a second axis that much longer than the first: plainly a thin wall
 constexpr double kLong = 2;  // an axis that much longer than the first is measured again
+
+template <class M>
+auto pseudo_inverse(const M& m) {
+  return ((m.transpose() * m).inverse() * m.transpose()).eval();
+}
 
 struct Table {
   std::array<Vec<3>, kPairs> u;
@@ -26,13 +32,13 @@ struct Table {
       rows.row(i) << u[i][0] * u[i][0], u[i][1] * u[i][1], u[i][2] * u[i][2], 2 * u[i][0] * u[i][1],
           2 * u[i][0] * u[i][2], 2 * u[i][1] * u[i][2];
     }
-    inverse = (rows.transpose() * rows).inverse() * rows.transpose();
+    inverse = pseudo_inverse(rows);
     Eigen::Matrix<double, kPlanePairs, 3> plane;
     for (int i = 0; i < kPlanePairs; ++i) {
       const Vec<2> v = plane_direction(i);
       plane.row(i) << v[0] * v[0], v[1] * v[1], 2 * v[0] * v[1];
     }
-    plane_inverse = (plane.transpose() * plane).inverse() * plane.transpose();
+    plane_inverse = pseudo_inverse(plane);
   }
 
   static Vec<2> plane_direction(int i) {
@@ -60,13 +66,43 @@ double length_of(double eigenvalue, double far) {
   return 1 / std::sqrt(std::max(eigenvalue, 1 / (far * far)));
 }
 
+/// The second and the third axis by rays in their own plane, which the short rays of a thin wall
+/// would drown.
+void measure_plane(const Locator<3>& surface, const Vec<3>& c, double far, SeenAxes& seen) {
+  const Vec<3> e2 = seen.axis.col(1), e3 = seen.axis.col(2);
+  Eigen::Matrix<double, kPlanePairs, 1> f;
+  for (int i = 0; i < kPlanePairs; ++i) {
+    const Vec<2> v = Table::plane_direction(i);
+    f[i] = inverse_product(surface, c, v[0] * e2 + v[1] * e3, far);
+  }
+  const Vec<3> m = table().plane_inverse * f;
+  Mat<2> plane;
+  plane << m[0], m[2], m[2], m[1];
+  const Eigen::SelfAdjointEigenSolver<Mat<2>> eigen(plane);
+  for (int k = 0; k < 2; ++k) {
+    const Vec<2> v = eigen.eigenvectors().col(1 - k);
+    seen.length[1 + k] = std::max(seen.length[0], length_of(eigen.eigenvalues()[1 - k], far));
+    seen.axis.col(1 + k) = v[0] * e2 + v[1] * e3;
+  }
+}
+
 }  // namespace
 
 std::span<const Vec<3>> EllipsoidFit::directions() { return table().u; }
 
-SeenAxes EllipsoidFit::at(const Locator<3>& surface, const Vec<3>& c, double r) {
+SeenAxes EllipsoidFit::at(const Locator<3>& surface, const Vec<3>& c, double r,
+                          const Vec<3>& across) {
   const Table& t = table();
   const double far = kFar * r;
+  if (!across.isZero()) {
+    SeenAxes seen;
+    seen.length[0] = r;
+    seen.axis.col(0) = across;
+    seen.axis.col(1) = across.unitOrthogonal();
+    seen.axis.col(2) = across.cross(seen.axis.col(1));
+    measure_plane(surface, c, far, seen);
+    if (seen.length[1] > kThin * r) return seen;
+  }
   Eigen::Matrix<double, kPairs, 1> f;
   for (int i = 0; i < kPairs; ++i) f[i] = inverse_product(surface, c, t.u[i], kNear * r);
   const Eigen::Matrix<double, 6, 1> m = t.inverse * f;
@@ -81,22 +117,7 @@ SeenAxes EllipsoidFit::at(const Locator<3>& surface, const Vec<3>& c, double r) 
     seen.axis.col(k) = eigen.eigenvectors().col(2 - k);
   }
   if (seen.length[1] > kLong * seen.length[0]) {
-    // The short rays of a thin wall drown its long axes: measure these in their own plane.
-    const Vec<3> e2 = seen.axis.col(1), e3 = seen.axis.col(2);
-    Eigen::Matrix<double, kPlanePairs, 1> fp;
-    for (int i = 0; i < kPlanePairs; ++i) {
-      const Vec<2> v = Table::plane_direction(i);
-      fp[i] = inverse_product(surface, c, v[0] * e2 + v[1] * e3, far);
-    }
-    const Vec<3> mp = t.plane_inverse * fp;
-    Mat<2> plane;
-    plane << mp[0], mp[2], mp[2], mp[1];
-    const Eigen::SelfAdjointEigenSolver<Mat<2>> in_plane(plane);
-    for (int k = 0; k < 2; ++k) {
-      const Vec<2> v = in_plane.eigenvectors().col(1 - k);
-      seen.length[1 + k] = std::max(seen.length[0], length_of(in_plane.eigenvalues()[1 - k], far));
-      seen.axis.col(1 + k) = v[0] * e2 + v[1] * e3;
-    }
+    measure_plane(surface, c, far, seen);
   } else if (seen.length[2] > kLong * seen.length[0]) {
     seen.length[2] =
         std::max(seen.length[1], 1 / std::sqrt(inverse_product(surface, c, seen.axis.col(2), far)));

@@ -19,8 +19,10 @@ class EllipsoidFit {
   /// Fixed unit directions of the half sphere; each ray is also shot backward.
   static std::span<const Vec<3>> directions();
 
-  /// Seen from c, where the nearest wall is at r; rays are cut at 20 r.
-  static SeenAxes at(const Locator<3>& surface, const Vec<3>& c, double r);
+  /// Seen from c, where the nearest wall is at r; rays are cut at 20 r. `across`: unit direction
+  /// in which two walls face each other at r, zero when unknown: it saves most rays in thin walls.
+  static SeenAxes at(const Locator<3>& surface, const Vec<3>& c, double r,
+                     const Vec<3>& across = Vec<3>::Zero());
 };
 
 }  // namespace lamella

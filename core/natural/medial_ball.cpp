@@ -10,6 +10,7 @@ constexpr double kContact = 1.1;    // of the radius: facets as near as this are
 constexpr double kDistinct = 0.9;   // cosine above which two contacts are one
 constexpr double kOpposite = 0.26;  // hull nearer than this: medial, or a wedge under 30 degrees
 constexpr double kGrowth = 0.3;     // of the ideal growth of the radius that a step must reach
+constexpr double kFacing = -0.95;   // cosine below which two contacts face each other
 constexpr int kRounds = 60;
 constexpr int kTrials = 12;
 constexpr double kFloor = 1e-6;  // of the diagonal: smallest radius, where the body has none
@@ -53,6 +54,12 @@ struct Contacts {
     for (const auto& kept : away)
       if (a.dot(kept) > kDistinct) return;
     away.push_back(a);
+  }
+
+  /// See MedialBall.
+  Vec<3> across() const {
+    if (away.size() != 2 || away[0].dot(away[1]) > kFacing) return Vec<3>::Zero();
+    return (away[0] - away[1]).normalized();
   }
 };
 
@@ -141,11 +148,13 @@ MedialBall climb_to_medial_ball(const Locator<3>& surface, const Vec<3>& x) {
       if (n.distance2 <= kContact * kContact * touch.distance2) contacts.add(ball.center, n);
     }
     Vec<3> g = smallest_in_hull(contacts.away);
+    ball.across = contacts.across();
     if (g.norm() < kOpposite) break;
     surface.all_within(ball.center, kContact * ball.radius, near);
     contacts.away.clear();
     for (const auto& n : near) contacts.add(ball.center, n);
     g = smallest_in_hull(contacts.away);
+    ball.across = contacts.across();
     const double slope = g.norm();  // growth of the radius per step along u
     if (slope < kOpposite) break;
 

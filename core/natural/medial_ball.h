@@ -11,6 +11,8 @@ struct MedialBall {
   double radius = 0;        ///< mm, distance of the center to the surface
   std::int32_t facet = -1;  ///< a nearest facet
   int rounds = 0;           ///< climbing steps taken
+  /// Unit, from one contact to the other where there are two that face each other, else zero.
+  Vec<3> across = Vec<3>::Zero();
 };
 
 /// The medial ball reached by climbing away from the surface, starting at x or, when x is not well

@@ -36,7 +36,7 @@ NaturalDetector::NaturalDetector(NaturalDetector&&) noexcept = default;
 
 Natural NaturalDetector::at(const Vec<3>& x, const NaturalParams& params) const {
   const MedialBall ball = climb_to_medial_ball(impl_->locator, x);
-  const SeenAxes seen = EllipsoidFit::at(impl_->locator, ball.center, ball.radius);
+  const SeenAxes seen = EllipsoidFit::at(impl_->locator, ball.center, ball.radius, ball.across);
   const double h_max = params.h_max > 0 ? params.h_max : impl_->locator.diagonal();
 
   Natural natural;

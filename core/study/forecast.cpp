@@ -8,6 +8,15 @@
 
 namespace lamella {
 
+Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& first,
+                                     const MetricFunction<3>& natural, const SizingField& sizing,
+                                     const Progress& progress) {
+  ForecastParams params;
+  params.size_factor = 1 / kAskedFiner;
+  params.threads = study.options.threads;
+  return forecast_mesh(first, natural, sizing, params, progress);
+}
+
 Result<std::vector<FirstMesh>> first_meshes(
     const std::vector<Part>& parts, const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
     const Progress& progress) {
@@ -38,12 +47,9 @@ Result<std::vector<BodyForecast>> forecast_from(const std::vector<FirstMesh>& fi
     const auto start = Clock::now();
     const NaturalDetector detector(part.surface);
     const NaturalParams natural = natural_params(study, part);
-    ForecastParams params;
-    params.size_factor = 1 / kAskedFiner;
-    params.threads = study.options.threads;
-    Result<SizingForecast> mesh = forecast_mesh(
-        first[b].mesh, [&](const Vec<3>& x) { return detector.at(x, natural).metric; }, *sizing,
-        params, progress.portion(at / count, (at + 1) / count));
+    Result<SizingForecast> mesh = forecast_body(
+        study, first[b].mesh, [&](const Vec<3>& x) { return detector.at(x, natural).metric; },
+        *sizing, progress.portion(at / count, (at + 1) / count));
     if (!mesh) return mesh.error();
     bodies.push_back(
         {part.name, *mesh, std::chrono::duration<double>(Clock::now() - start).count()});

@@ -17,6 +17,12 @@ struct BodyForecast {
   double seconds = 0;  ///< the forecast itself took, without the first mesh
 };
 
+/// Of a body whose first mesh is there; `natural` is the detector's answer at a point.
+/// Errors: those of `forecast_mesh`.
+Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& first,
+                                     const MetricFunction<3>& natural, const SizingField& sizing,
+                                     const Progress& progress = {});
+
 /// From the first mesh of every body, without adapting it. `meshers` as for `run`.
 /// Errors: those of `run`.
 Result<std::vector<BodyForecast>> forecast_study(

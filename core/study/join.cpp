@@ -88,6 +88,8 @@ IterationRecord join(const std::vector<const IterationRecord*>& records) {
     all.conformity += e * r->conformity;
     all.unit_edges += e * r->unit_edges;
     all.seconds += r->seconds;
+    all.forecast_nodes += r->forecast_nodes;
+    all.forecast_memory = std::max(all.forecast_memory, r->forecast_memory);
     all.layers_by_nodes += static_cast<double>(r->nodes) * r->layers_by_nodes;
     elements += e;
     if (r->layers.places == 0) continue;

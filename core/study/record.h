@@ -20,6 +20,8 @@ struct IterationRecord {
   LayerStats layers;
   double layers_by_nodes = 0;  ///< (B.2), as the thesis counts them
   double seconds = 0;          ///< wall time of this iteration
+  double forecast_nodes = 0;   ///< of the mesh at the end; 0 where nothing was forecast
+  double forecast_memory = 0;  ///< MB its adaption takes
 };
 
 }  // namespace lamella

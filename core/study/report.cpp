@@ -38,6 +38,8 @@ Json iteration_json(const IterationRecord& r) {
           {"unit_edges", r.unit_edges},
           {"layers", layers_json(r.layers)},
           {"layers_by_nodes", r.layers_by_nodes},
+          {"forecast_nodes", r.forecast_nodes},
+          {"forecast_memory", r.forecast_memory},
           {"seconds", r.seconds}};
 }
 

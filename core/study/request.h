@@ -8,8 +8,8 @@
 namespace lamella {
 
 /// Sizes are asked finer than wanted by this: the best elements on average are a little larger than
-/// unit, and layers are promised, not averages.
-inline constexpr double kAskedFiner = 1.05;
+/// unit. LayerCorrection does the rest.
+inline constexpr double kAskedFiner = 1.02;
 
 /// Whether the study makes sense for these parts. Errors: usage.
 Result<void> check_request(const Study& study, const std::vector<Part>& parts);

@@ -4,16 +4,19 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "core/base/parallel.h"
 #include "core/mesh/validate.h"
 #include "core/natural/boundary_distance.h"
+#include "core/natural/layer_correction.h"
 #include "core/natural/layers.h"
 #include "core/natural/neighborhood.h"
 #include "core/natural/thickness_detector.h"
 #include "core/optimize/adapt.h"
 #include "core/sizing/sizing_field.h"
 #include "core/study/first_mesh.h"
+#include "core/study/forecast.h"
 #include "core/study/join.h"
 #include "core/study/measure.h"
 #include "core/study/request.h"
@@ -31,7 +34,8 @@ double seconds_since(Clock::time_point start) {
 constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations share the rest
 constexpr double kMinGuardShare = 0.3;
 constexpr double kAskedScale = kAskedFiner * kAskedFiner;  // of the metric
-constexpr double kSettled = 0.05;                          // relative change of the node count
+constexpr double kWanted = 1.1;    // of n: the average place, so that the poor ones have n
+constexpr double kSettled = 0.05;  // relative change of the node count
 
 constexpr double kGained = 0.02;  // relative rise of the score that is worth another iteration
 
@@ -75,7 +79,9 @@ class BodyLoop {
     outcome_.first_mesh_by = first->made_by;
     outcome_.notes.insert(outcome_.notes.end(), first->notes.begin(), first->notes.end());
     detector_ = make_detector(options_.detector, part_.surface);
-    return accept(std::move(first->mesh), start, progress.portion(0.7, 1));
+    if (Result<void> enough = look_ahead(first->mesh, progress.portion(0.7, 0.8)); !enough)
+      return enough;
+    return accept(std::move(first->mesh), start, progress.portion(0.8, 1));
   }
 
   bool done() const { return done_; }
@@ -90,16 +96,19 @@ class BodyLoop {
                                       kMinGuardShare * outcome_.chord_tolerance);
     params.seed = options_.seed;
     params.threads = options_.threads;
+    params.memory_limit = options_.memory;
     // Asked at every accepted point, a detector that can answer there keeps walls from blurring
     // into their neighbors: two rounds reach what the nodal field does not in six.
     MetricFunction<3> asked_at;
     MetricField<3> asked = current_.metric;
     if (const MetricFunction<3> natural = detector_->function(natural_))
       asked_at = [this, natural](const Vec<3>& x) -> Metric<3> {
-        return sizing_.apply(x, natural(x)) * kAskedScale;
+        return sizing_.apply(x, correction_.apply(x, natural(x), natural_.h_min)) * kAskedScale;
       };
     else
-      for (Metric<3>& m : asked) m *= kAskedScale;
+      for (std::size_t i = 1; i < asked.size(); ++i)
+        asked[i] =
+            correction_.apply(current_.mesh.points[i], asked[i], natural_.h_min) * kAskedScale;
     Result<Adapted<3>> adapted = adapt<3>(current_.mesh, asked, &shape().surface, params,
                                           progress.portion(0, 0.8), asked_at);
     if (!adapted) return give_up(adapted.error());
@@ -148,6 +157,23 @@ class BodyLoop {
     return {};
   }
 
+  /// Forecasts the mesh of the end; a detector that needs a mesh forecasts nothing. Errors: memory
+  /// when the budget would not do, before anything is spent.
+  Result<void> look_ahead(const SimplexMesh<3>& first, const Progress& progress) {
+    const MetricFunction<3> natural = detector_->function(natural_);
+    if (!natural) return {};
+    Result<SizingForecast> made = forecast_body(study_, first, natural, sizing_, progress);
+    if (!made) return made.error();
+    forecast_ = made->corrected;
+    if (!options_.memory || forecast_.memory <= *options_.memory) return {};
+    const auto whole = [](double x) { return std::to_string(std::llround(x)); };
+    return Error{Code::memory,
+                 "Body \"" + part_.name + "\": about " + whole(forecast_.nodes) + " nodes and " +
+                     whole(forecast_.memory) + " MB are to be expected, above the " +
+                     whole(*options_.memory) + " MB allowed.",
+                 "Allow more memory, ask for fewer layers, or raise h_min or a size."};
+  }
+
   /// n, or less in the first iterations of a progressive run; the last two get n.
   int layers_of_iteration(int i) const {
     const bool early = options_.progressive && i + 1 < options_.iterations;
@@ -170,8 +196,11 @@ class BodyLoop {
     Result<NaturalField> field = detector_->field(next.mesh, natural_, progress.portion(0, 0.55));
     if (!field) return field.error();
     next.metric = std::move(field->metric);
+    std::vector<char> by_hand(next.mesh.points.size(), 0);
     const auto correct = [&](std::size_t i) {
-      next.metric[i + 1] = sizing_.apply(next.mesh.points[i + 1], next.metric[i + 1]);
+      const Metric<3> natural = next.metric[i + 1];
+      next.metric[i + 1] = sizing_.apply(next.mesh.points[i + 1], natural);
+      by_hand[i + 1] = next.metric[i + 1] != natural;
     };
     if (!sizing_.empty() && !parallel_each(next.mesh.node_count(), options_.threads,
                                            progress.portion(0.55, 0.6), correct))
@@ -183,11 +212,15 @@ class BodyLoop {
                                            options_.threads, progress.portion(0.8, 1));
     if (!layers) return layers.error();
     next.layers = std::move(layers->at_node);
+    if (!outcome_.records.empty())
+      if (Result<void> learnt = learn(next, by_hand); !learnt) return learnt;
     next.below = std::move(layers->below);
     record->layers = layers->stats;
     record->layers_by_nodes = average_layers(layer_numbers(next.mesh));
     record->iteration = static_cast<int>(outcome_.records.size());
     record->seconds = seconds_since(start);
+    record->forecast_nodes = forecast_.nodes;
+    record->forecast_memory = forecast_.memory;
 
     const double score = layers_score(record->layers, settings_.layers);
     if (!outcome_.records.empty()) {
@@ -213,6 +246,18 @@ class BodyLoop {
     return {};
   }
 
+  /// Where layers are what the walls ask, not what the user does by hand.
+  Result<void> learn(const MeshState& made, const std::vector<char>& by_hand) {
+    std::vector<double> layers = made.layers;
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      if (by_hand[i]) layers[i] = std::numeric_limits<double>::quiet_NaN();
+    Result<LayerCorrection> learnt =
+        LayerCorrection::learn(correction_, made.mesh, layers, kWanted * natural_.layers);
+    if (!learnt) return learnt.error();
+    correction_ = std::move(*learnt);
+    return {};
+  }
+
   /// An iteration that failed ends the body with what it has; without any adapted mesh it is an
   /// error.
   Result<void> give_up(const Error& error) {
@@ -235,6 +280,8 @@ class BodyLoop {
   SizingField sizing_;
   std::unique_ptr<const FaceGroups> groups_;
   std::unique_ptr<const Part> grouped_;
+  LayerCorrection correction_;
+  MeshForecast forecast_;
   MeshState current_, best_;
   double best_score_ = 0;
   std::size_t best_record_ = 0;

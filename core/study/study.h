@@ -37,6 +37,7 @@ struct StudyOptions {
   std::uint64_t seed = 1;
   Detector detector = Detector::geometric;  ///< who finds the wall thickness
   bool progressive = false;  ///< asks 2, 3, .. n layers (4.4.2): less memory at the first peak
+  std::optional<double> memory{};  ///< MB an adaption may take; unset: no limit
 };
 
 /// A STEP or STL file.

@@ -195,6 +195,25 @@ TEST(Run, CancelGivesTheBestSoFarOrAnErrorBeforeTheFirstMesh) {
   EXPECT_EQ(early.error().code, Code::cancelled);
 }
 
+TEST(Run, WhatWillNotFitIsRefusedBeforeItIsTried) {
+  Study study;
+  IterationRecord first;
+  const auto outcome =
+      run(study, {plate("plate")}, real(), {}, [&](const IterationRecord& r, const auto&) {
+        if (r.iteration == 0) first = r;
+      });
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_GT(first.forecast_memory, 0);
+  EXPECT_NEAR(first.forecast_nodes / static_cast<double>(outcome->records.back().nodes), 1, 0.4);
+
+  study.options.memory = 0.5 * first.forecast_memory;
+  const auto refused = run(study, {plate("plate")}, real());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Code::memory);
+  study.options.memory = 3 * first.forecast_memory;
+  EXPECT_TRUE(run(study, {plate("plate")}, real()));
+}
+
 TEST(Run, RequestsWithoutSenseAreRefused) {
   Study study;
   EXPECT_EQ(run(study, {}, real()).error().code, Code::usage);
