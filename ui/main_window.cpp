@@ -9,7 +9,6 @@
 #include <QMessageBox>
 #include <QMimeData>
 #include <QProgressBar>
-#include <QSettings>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
@@ -306,7 +305,7 @@ void MainWindow::connect_actions() {
   connect(act[Act::export_mesh], &QAction::triggered, this, &MainWindow::ask_export);
   connect(act[Act::save_picture], &QAction::triggered, this, &MainWindow::ask_picture);
   connect(act[Act::quit], &QAction::triggered, this, &QWidget::close);
-  connect(act[Act::run], &QAction::triggered, this, [this] { start_run(false); });
+  connect(act[Act::run], &QAction::triggered, this, [this] { start_run(); });
   connect(act[Act::cancel], &QAction::triggered, session_, &Session::cancel);
   QUndoStack* undo = session_->undo_stack();
   connect(act[Act::undo], &QAction::triggered, undo, &QUndoStack::undo);
@@ -516,15 +515,21 @@ void MainWindow::add_size(Act kind) {
                              0.5 * reach});
 }
 
-void MainWindow::start_run(bool whatever_memory) {
-  const double budget = QSettings().value("memory_budget", 0).toDouble();
-  if (!whatever_memory && budget > 0 && forecaster_->total().memory > budget) {
+void MainWindow::start_run() {
+  const std::optional<double>& budget = session_->study().options.memory;
+  if (budget && forecaster_->total().memory > *budget) {
+    const auto without_budget = [this] {
+      Study study = session_->study();
+      study.options.memory.reset();
+      session_->edit(tr("Drop the memory budget"), std::move(study));
+      start_run();
+    };
     banner_->show_message(Banner::Kind::info,
                           tr("This mesh takes about %L1 MB, more than the budget of %L2 MB.")
                               .arg(forecaster_->total().memory, 0, 'f', 0)
-                              .arg(budget, 0, 'f', 0),
-                          tr("Ask for fewer layers, or raise the budget in the preferences."),
-                          {{tr("Run anyway"), [this] { start_run(true); }}});
+                              .arg(*budget, 0, 'f', 0),
+                          tr("Ask for fewer layers, or raise the budget under Advanced."),
+                          {{tr("Run without a budget"), without_budget}});
     return;
   }
   banner_->hide();

@@ -65,7 +65,7 @@ class MainWindow : public QMainWindow {
   /// False when the user would rather keep what is unsaved.
   bool may_drop();
   void add_size(Act kind);
-  void start_run(bool whatever_memory);
+  void start_run();
   void ask_export();
   void ask_picture();
   void report_run();

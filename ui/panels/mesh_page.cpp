@@ -45,6 +45,12 @@ MeshPage::MeshPage(Session& session, QWidget* parent) : QWidget(parent), session
   threads_ = integer_box(0, 256, "threads", tr("The mesh does not depend on it"));
   threads_->setSpecialValueText(tr("all cores"));
   more_->form()->add(tr("Threads"), threads_);
+  memory_ =
+      integer_box(0, 10000000, "memory", tr("A run that is expected to take more does not start"));
+  memory_->setSpecialValueText(tr("no bound"));
+  memory_->setSuffix(tr(" MB"));
+  memory_->setSingleStep(1000);
+  more_->form()->add(tr("Memory budget"), memory_);
   layout->addWidget(more_);
 
   const auto edit = [this](const QString& what, auto&& change) {
@@ -71,12 +77,17 @@ MeshPage::MeshPage(Session& session, QWidget* parent) : QWidget(parent), session
   connect(threads_, &QSpinBox::valueChanged, this, [edit](int value) {
     edit(tr("Threads"), [value](StudyOptions& o) { o.threads = value; });
   });
+  connect(memory_, &QSpinBox::valueChanged, this, [edit](int mb) {
+    edit(tr("Memory budget"),
+         [mb](StudyOptions& o) { o.memory = mb > 0 ? std::optional<double>(mb) : std::nullopt; });
+  });
 }
 
 void MeshPage::refresh() {
   const QSignalBlocker block[] = {QSignalBlocker(chord_),       QSignalBlocker(iterations_),
                                   QSignalBlocker(progressive_), QSignalBlocker(detector_),
-                                  QSignalBlocker(seed_),        QSignalBlocker(threads_)};
+                                  QSignalBlocker(seed_),        QSignalBlocker(threads_),
+                                  QSignalBlocker(memory_)};
   double low = std::numeric_limits<double>::max();
   double high = 0;
   for (int k = 0; k < static_cast<int>(session_.parts().size()); ++k) {
@@ -97,6 +108,7 @@ void MeshPage::refresh() {
   seed_->setValue(
       static_cast<int>(std::min<std::uint64_t>(o.seed, std::numeric_limits<int>::max())));
   threads_->setValue(o.threads);
+  memory_->setValue(static_cast<int>(o.memory.value_or(0)));
 }
 
 }  // namespace lamella::ui

@@ -30,6 +30,7 @@ class MeshPage : public QWidget {
   QComboBox* detector_;
   QSpinBox* seed_;
   QSpinBox* threads_;
+  QSpinBox* memory_;
 };
 
 }  // namespace lamella::ui

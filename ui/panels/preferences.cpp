@@ -19,10 +19,9 @@ Preferences::Preferences(QWidget* parent) : QDialog(parent) {
   theme->addItem(tr("dark"));
   theme->setCurrentIndex(QSettings().value("dark", false).toBool() ? 1 : 0);
   form->add(tr("Theme"), theme);
-  auto* memory =
-      integer_box(0, 10000000, "memory_budget",
-                  tr("A run that is expected to take more is asked about before it starts.\n"
-                     "Only what has been forecast is known"));
+  auto* memory = integer_box(
+      0, 10000000, "memory_budget",
+      tr("Of studies begun from now on: a run that is expected to take more does not start"));
   memory->setSpecialValueText(tr("no bound"));
   memory->setSuffix(tr(" MB"));
   memory->setSingleStep(1000);

@@ -49,6 +49,7 @@ std::string asked(Study study) {
   study.name.clear();
   study.inputs.clear();
   study.options.threads = 0;
+  study.options.memory.reset();
   study.cuts.clear();
   for (BodySettings& body : study.bodies) {
     body.visible = true;
@@ -63,6 +64,8 @@ Session::Session(Services services, QObject* parent)
     : QObject(parent), services_(std::move(services)) {
   Study study;
   study.options.threads = QSettings().value("threads", 0).toInt();
+  if (const double memory = QSettings().value("memory_budget", 0).toDouble(); memory > 0)
+    study.options.memory = memory;
   study_ = std::make_shared<const Study>(std::move(study));
   connect(&worker_, &Worker::progressed, this, [this](double fraction, const QString& phase) {
     const double elapsed = static_cast<double>(clock_.elapsed()) / 1000;

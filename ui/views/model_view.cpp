@@ -192,7 +192,10 @@ std::optional<Picked> ModelView::pick(const QPointF& at) const {
 
 bool ModelView::mouse(QMouseEvent* event) {
   if (event->type() == QEvent::MouseButtonPress) drag_merge_ = session_.new_merge();
-  const bool taken = picks_->mouse(event) || size_tool_->mouse(event) || tool_->mouse(event);
+  // A mode has the clicks to itself, also where a handle is.
+  const bool free = actions_.mode() == Act::count;
+  const bool taken =
+      picks_->mouse(event) || (free && (size_tool_->mouse(event) || tool_->mouse(event)));
   if (taken || event->type() == QEvent::MouseMove) overlay_->update();
   const bool clicks = event->button() == Qt::LeftButton || event->button() == Qt::RightButton;
   if (event->type() == QEvent::MouseButtonPress) {
