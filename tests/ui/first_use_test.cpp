@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <QElapsedTimer>
 #include <QSpinBox>
 #include <QTest>
 #include <QTimer>
 #include <algorithm>
-#include <fstream>
+#include <ctime>
 
 #include "app/window_services.h"
 #include "core/cad/sample_parts.h"
@@ -110,19 +109,20 @@ TEST(FirstUse, FromTwoPartsToAnExportedMeshAndBack) {
   EXPECT_FALSE(session.modified());
 }
 
-/// Milliseconds this thread was ready to run and had no processor, since it began.
-double waited_for_processor() {
-  std::ifstream file("/proc/thread-self/schedstat");
-  double ran = 0, waited = 0;
-  file >> ran >> waited;
-  return waited / 1e6;
+/// Milliseconds of the processor that this thread had since it began.
+double busy_milliseconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
-/// The window answers all the time; when other programs have the processor, that is not its fault.
+/// The window's thread never works for long between two turns of its event loop. Its own work is
+/// counted, not the time in which other programs have the processor.
 TEST(FirstUse, TheWindowAnswersWhileItMeshes) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(write_sample("plate", folder / "plate.step"));
   MainWindow window(window_services(folder.path()));
+  window.resize(1280, 800);
   window.show();
   ASSERT_TRUE(QTest::qWaitForWindowExposed(&window));
   Session& session = window.session();
@@ -130,16 +130,13 @@ TEST(FirstUse, TheWindowAnswersWhileItMeshes) {
   ASSERT_TRUE(wait_idle(session));
   window.findChild<QSpinBox*>("layers")->setValue(2);
   window.findChild<QSpinBox*>("iterations")->setValue(2);
-  QElapsedTimer since;
-  double waited = 0, longest = 0;
+  double since = 0, longest = 0;
   int beats = 0;
   QTimer heart;
   QObject::connect(&heart, &QTimer::timeout, [&] {
-    const double now = waited_for_processor();
-    if (beats++ > 0)
-      longest = std::max(longest, static_cast<double>(since.nsecsElapsed()) / 1e6 - (now - waited));
-    since.restart();
-    waited = now;
+    const double now = busy_milliseconds();
+    if (beats++ > 0) longest = std::max(longest, now - since);
+    since = now;
   });
   double best = 1e9;
   for (int attempt = 0; attempt < 4 && best >= 100; ++attempt) {
@@ -151,7 +148,7 @@ TEST(FirstUse, TheWindowAnswersWhileItMeshes) {
     ASSERT_GT(beats, 3);
     best = std::min(best, longest);
   }
-  EXPECT_LT(best, 100) << "ms without an answer";
+  EXPECT_LT(best, 100) << "ms of work between two answers";
 }
 
 }  // namespace

@@ -11,8 +11,6 @@
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   QStandardPaths::setTestModeEnabled(true);
-  // The software renderer works in the window's own thread, so that what it costs can be measured.
-  qputenv("LP_NUM_THREADS", "0");
   QLocale::setDefault(QLocale(QLocale::English));
   QSurfaceFormat::setDefaultFormat(lamella::ui::VtkView::format());
   QApplication application(argc, argv);
