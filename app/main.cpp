@@ -36,6 +36,7 @@ struct Script {
   bool flat = false;   ///< the cut goes through elements
   QString near;        ///< "x,y,z,r": brings what is within r mm of a point close
   QString color;       ///< body, quality, thickness or layers
+  QString select;      ///< group, sizing or cut: the first of them is selected
   int tab = 0;         ///< of the results
   QString screenshot;  ///< picture of the window
   QString section;     ///< picture of the 3D view, cut open
@@ -145,6 +146,9 @@ int play(ui::MainWindow& window, const Script& script) {
   const QStringList colors{"body", "quality", "thickness", "layers"};
   if (const auto color = colors.indexOf(script.color); color >= 0)
     window.view().set_color_by(ui::ColorBy(color));
+  const QStringList kinds{"body", "group", "sizing", "cut"};
+  if (const auto kind = kinds.indexOf(script.select); kind > 0)
+    session.select_item({ui::ItemKind(kind), 0});
   if (script.cut) window.view().look_at_section();
   if (script.flat) window.actions()[ui::Act::crinkle]->setChecked(false);
   if (const QStringList at = script.near.split(','); at.size() == 4)
@@ -202,6 +206,7 @@ int main(int argc, char** argv) {
   option("near", "brings what is within R of a point close", "X,Y,Z,R");
   option("color", "body, quality, thickness or layers", "FIELD");
   option("dark", "the dark theme");
+  option("select", "group, sizing or cut whose properties are shown", "KIND");
   option("tab", "tab of the results, from 0", "K");
   option("screenshot", "picture of the window, then leave", "FILE");
   option("section", "picture of a section, then leave", "FILE");
@@ -214,6 +219,7 @@ int main(int argc, char** argv) {
   script.flat = parser.isSet("flat");
   script.near = parser.value("near");
   script.color = parser.value("color");
+  script.select = parser.value("select");
   script.tab = parser.value("tab").toInt();
   script.screenshot = parser.value("screenshot");
   script.section = parser.value("section");

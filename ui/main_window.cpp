@@ -141,6 +141,8 @@ void MainWindow::make_body() {
   layout->addWidget(columns_, 1);
   setCentralWidget(central);
   connect(session_, &Session::logged, log, &LogPanel::add);
+  connect(welcome_, &Welcome::file_chosen, this,
+          [this](const QString& file) { open_files({file}); });
   connect(welcome_, &Welcome::sample_chosen, this, [this](const QString& name) {
     banner_->hide();
     session_->open_sample(name.toStdString());
