@@ -6,6 +6,15 @@
 #include "ui/theme.h"
 
 namespace lamella::ui {
+namespace {
+
+/// Without zeros at its end: the three boxes share the width of one.
+class CoordinateBox : public QDoubleSpinBox {
+ public:
+  QString textFromValue(double value) const override { return locale().toString(value, 'g', 6); }
+};
+
+}  // namespace
 
 QLabel* styled_label(const QString& text, const char* kind) {
   auto* l = new QLabel(text);
@@ -95,8 +104,13 @@ PointBox::PointBox(const char* name, const QString& tip, QWidget* parent) : QWid
   row->setSpacing(4);
   const char* const axes[] = {"x", "y", "z"};
   for (std::size_t k = 0; k < 3; ++k) {
-    auto* box = number_box(-1e6, 1e6, 0.5, axes[k], tip);
-    box->setDecimals(3);
+    auto* box = new CoordinateBox;
+    box->setObjectName("coordinate");
+    box->setRange(-1e6, 1e6);
+    box->setSingleStep(0.5);
+    box->setKeyboardTracking(false);
+    box->setToolTip(tip);
+    box->setDecimals(4);
     box->setButtonSymbols(QAbstractSpinBox::NoButtons);
     box->setAccessibleName(axes[k]);
     box->setMinimumWidth(30);

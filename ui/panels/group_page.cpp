@@ -1,10 +1,10 @@
 #include "ui/panels/group_page.h"
 
 #include <QComboBox>
+#include <QKeyEvent>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPushButton>
-#include <QShortcut>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -109,9 +109,17 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
                [kind](BoundaryGroup& g) { g.kind = kind; });
   });
   connect(take, &QPushButton::clicked, this, &GroupPage::remove_chosen);
-  auto* del = new QShortcut(QKeySequence::Delete, faces_);
-  del->setContext(Qt::WidgetShortcut);
-  connect(del, &QShortcut::activated, this, &GroupPage::remove_chosen);
+  faces_->installEventFilter(this);
+}
+
+bool GroupPage::eventFilter(QObject* watched, QEvent* event) {
+  const bool key = event->type() == QEvent::ShortcutOverride || event->type() == QEvent::KeyPress;
+  if (watched != faces_ || !key || static_cast<QKeyEvent*>(event)->key() != Qt::Key_Delete)
+    return QWidget::eventFilter(watched, event);
+  // Here the key is for faces, not for the group.
+  if (event->type() == QEvent::KeyPress) remove_chosen();
+  event->accept();
+  return true;
 }
 
 const BoundaryGroup* GroupPage::group() const {

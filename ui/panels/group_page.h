@@ -23,6 +23,9 @@ class GroupPage : public QWidget {
   GroupPage(Session& session, Actions& actions, QWidget* parent = nullptr);
   void refresh();
 
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
  private:
   const BoundaryGroup* group() const;
   void remove_chosen();

@@ -1,5 +1,6 @@
 #include "ui/panels/properties_panel.h"
 
+#include <QLabel>
 #include <QScrollArea>
 #include <QStackedWidget>
 #include <QVBoxLayout>
@@ -20,6 +21,7 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
   auto* outer = new QVBoxLayout(this);
   outer->setContentsMargins(1, 1, 1, 1);
   auto* scroll = new QScrollArea;
+  scroll_ = scroll;
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
@@ -38,6 +40,11 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
     pages_->addWidget(page);
   mesh_ = new MeshPage(session);
   layout->addWidget(pages_, 1);
+  empty_ = new QLabel(tr("The settings of what is selected appear here."));
+  empty_->setObjectName("faint");
+  empty_->setAlignment(Qt::AlignCenter);
+  empty_->setWordWrap(true);
+  outer->addWidget(empty_);
   layout->addWidget(mesh_);
   scroll->setWidget(content_);
 
@@ -49,7 +56,8 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
 }
 
 void PropertiesPanel::refresh() {
-  content_->setVisible(!session_.parts().empty());
+  scroll_->setVisible(!session_.parts().empty());
+  empty_->setVisible(session_.parts().empty());
   // Between a new study and its parts the two lists may differ for a moment.
   if (session_.study().bodies.size() != session_.parts().size()) return;
   pages_->setCurrentIndex(static_cast<int>(session_.item().kind));

@@ -2,6 +2,7 @@
 
 #include <QFrame>
 
+class QLabel;
 class QStackedWidget;
 
 namespace lamella::ui {
@@ -28,6 +29,8 @@ class PropertiesPanel : public QFrame {
 
   Session& session_;
   QWidget* content_;
+  QWidget* scroll_;
+  QLabel* empty_;
   QStackedWidget* pages_;
   BodyPage* body_;
   GroupPage* group_;

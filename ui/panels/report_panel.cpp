@@ -22,6 +22,8 @@ ReportPanel::ReportPanel(Session& session, QWidget* parent)
   setFrameShape(QFrame::NoFrame);
   document()->setDocumentMargin(14);
   setOpenLinks(false);
+  // Columns keep their numbers whole; notes have a width of their own.
+  setLineWrapMode(QTextEdit::NoWrap);
   connect(this, &QTextBrowser::anchorClicked, this, &ReportPanel::jump);
   connect(&session, &Session::run_finished, this, &ReportPanel::refresh);
   connect(&session, &Session::iterations_changed, this, &ReportPanel::refresh);
@@ -70,8 +72,9 @@ void ReportPanel::refresh() {
   html += "</table>";
   for (const BodyOutcome& body : outcome->bodies)
     for (const std::string& note : body.notes)
-      html += "<p style='color:" + theme::soft_text.name() + "'>" +
-              QString::fromStdString(body.name + ": " + note).toHtmlEscaped() + "</p>";
+      html += "<table width='760'><tr><td style='color:" + theme::soft_text.name() + "'>" +
+              QString::fromStdString(body.name + ": " + note).toHtmlEscaped() +
+              "</td></tr></table>";
   html += places_html();
   setHtml(html);
 }

@@ -5,8 +5,10 @@
 
 #include <QMouseEvent>
 #include <QPainter>
+#include <QPolygonF>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "ui/theme.h"
 #include "ui/views/vtk_view.h"
@@ -116,11 +118,56 @@ bool SizeTool::mouse(QMouseEvent* event) {
   return true;
 }
 
+std::vector<QPolygonF> SizeTool::outline() const {
+  std::vector<QPolygonF> lines;
+  const auto ring = [&](const Vec<3>& center, const Vec<3>& u, const Vec<3>& v) {
+    constexpr int count = 64;
+    QPolygonF line;
+    for (int k = 0; k <= count; ++k) {
+      const double a = 2 * std::numbers::pi * k / count;
+      line << view_.project(center + std::cos(a) * u + std::sin(a) * v);
+    }
+    lines.push_back(line);
+  };
+  if (const auto* s = std::get_if<SphereShape>(&*shape_)) {
+    const QPointF c = view_.project(s->center);
+    const Vec<3> u = (view_.unproject(c + QPointF(100, 0), s->center) - s->center).normalized();
+    const Vec<3> v = (view_.unproject(c + QPointF(0, 100), s->center) - s->center).normalized();
+    ring(s->center, s->radius * u, s->radius * v);
+  } else if (const auto* b = std::get_if<BoxShape>(&*shape_)) {
+    const Vec<3> x = b->x_axis.normalized();
+    const Vec<3> y = (b->y_axis - b->y_axis.dot(x) * x).normalized();
+    const Vec<3> z = x.cross(y);
+    const auto corner = [&](int k) {
+      return view_.project(b->center + ((k & 1) - 0.5) * b->size[0] * x +
+                           (((k >> 1) & 1) - 0.5) * b->size[1] * y +
+                           (((k >> 2) & 1) - 0.5) * b->size[2] * z);
+    };
+    for (int k = 0; k < 8; ++k)
+      for (const int axis : {1, 2, 4})
+        if (!(k & axis)) lines.push_back(QPolygonF() << corner(k) << corner(k | axis));
+  } else if (const auto* c = std::get_if<CylinderShape>(&*shape_)) {
+    const Vec<3> axis = (c->to - c->from).normalized();
+    const Vec<3> u = c->radius * axis.unitOrthogonal();
+    const Vec<3> v = axis.cross(u);
+    ring(c->from, u, v);
+    ring(c->to, u, v);
+  }
+  return lines;
+}
+
 void SizeTool::paint(QPainter& painter) const {
   const std::vector<Vec<3>> at = knobs();
   if (at.empty()) return;
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing);
+  // Also where the shape is hidden by the part.
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(QColor(255, 255, 255, 150), 3.5));
+  const std::vector<QPolygonF> lines = outline();
+  for (const QPolygonF& line : lines) painter.drawPolyline(line);
+  painter.setPen(QPen(theme::warning, 1.6));
+  for (const QPolygonF& line : lines) painter.drawPolyline(line);
   const QPointF center = view_.project(at[0]);
   for (std::size_t k = 1; k < at.size(); ++k) {
     painter.setPen(QPen(theme::warning, 1.2, Qt::DashLine));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QPointF>
+#include <QPolygonF>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -31,6 +32,7 @@ class SizeTool {
 
  private:
   std::vector<Vec<3>> knobs() const;
+  std::vector<QPolygonF> outline() const;
   SizingShape moved(std::size_t knob, const Vec<3>& to) const;
 
   VtkView& view_;
