@@ -250,11 +250,13 @@ Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface
   layers.below = places_below(mesh, places, counted, asked);
   std::vector<double> weight(mesh.points.size(), 0.0);
   layers.at_node.assign(mesh.points.size(), 0.0);
+  layers.at_facet.assign(mesh.facets.size(), std::numeric_limits<double>::quiet_NaN());
   const auto give = [&](NodeId node, double value) {
     layers.at_node[node] += value;
     weight[node] += 1;
   };
   for (const auto f : counted) {
+    layers.at_facet[f] = places[f].layers;
     for (const auto node : mesh.facets[f]) give(node, places[f].layers);
     for (const auto e : places[f].crossed)
       for (const auto node : mesh.elements[e]) give(node, places[f].layers);

@@ -17,6 +17,7 @@ struct PlaceBelow {
 
 struct Layers {
   std::vector<double> at_node;    ///< [node] layers of the wall around it; NaN where not measured
+  std::vector<double> at_facet;   ///< [facet] layers behind its center; NaN where not measured
   LayerStats stats;               ///< over the boundary facets' centers
   std::vector<PlaceBelow> below;  ///< places with less than n, the largest first
 };

@@ -13,6 +13,8 @@ constexpr double kGrowth = 0.3;     // of the ideal growth of the radius that a 
 constexpr double kFacing = -0.95;   // cosine below which two contacts face each other
 constexpr int kRounds = 60;
 constexpr int kTrials = 12;
+constexpr double kEdge = 0.1;    // of the skin: facets as near as this meet in the place asked
+constexpr double kDeep = 0.95;   // of the skin: as deep below a facet is well inside
 constexpr double kFloor = 1e-6;  // of the diagonal: smallest radius, where the body has none
 
 struct Start {
@@ -128,8 +130,9 @@ Vec<3> smallest_in_hull(const std::vector<Vec<3>>& points) {
   return best;
 }
 
-MedialBall climb_to_medial_ball(const Locator<3>& surface, const Vec<3>& x) {
-  const Start start = start_at(surface, x);
+namespace {
+
+MedialBall climb(const Locator<3>& surface, const Start& start) {
   const double floor = kFloor * surface.diagonal();
   MedialBall ball{start.x, std::sqrt(start.foot.distance2), start.foot.facet, 0};
   if (!start.inside || ball.radius < floor) {
@@ -189,6 +192,56 @@ MedialBall climb_to_medial_ball(const Locator<3>& surface, const Vec<3>& x) {
     ++ball.rounds;
   }
   return ball;
+}
+
+}  // namespace
+
+MedialBall climb_to_medial_ball(const Locator<3>& surface, const Vec<3>& x) {
+  return climb(surface, start_at(surface, x));
+}
+
+std::vector<MedialBall> medial_balls(const Locator<3>& surface, const Vec<3>& x) {
+  const double skin = kSkin * surface.diagonal();
+  const auto here = surface.nearest(x);
+  const Vec<3> foot = here->point;
+  std::vector<Nearest<3>> touched;
+  if (here->distance2 <= skin * skin) surface.all_within(foot, kEdge * skin, touched);
+  std::vector<Vec<3>> sides;         // normals
+  std::vector<std::size_t> side_of;  // [touched]
+  for (const auto& t : touched) {
+    const Vec<3> n = surface.normal(t.facet);
+    const auto known = std::find_if(sides.begin(), sides.end(),
+                                    [&](const Vec<3>& side) { return side.dot(n) > kDistinct; });
+    side_of.push_back(static_cast<std::size_t>(known - sides.begin()));
+    if (known == sides.end()) sides.push_back(n);
+  }
+  if (sides.size() < 2) return {climb_to_medial_ball(surface, x)};
+
+  // Below each side, and as deep below those that meet it in a convex edge.
+  std::vector<Vec<3>> inward;
+  std::vector<MedialBall> balls;
+  std::vector<char> convex(sides.size());
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Vec<3> below = foot - skin * sides[i];
+    std::fill(convex.begin(), convex.end(), 0);
+    for (std::size_t t = 0; t < touched.size(); ++t)
+      if (side_of[t] != i &&
+          surface.nearest_on_facet(below, touched[t].facet).distance2 < kDeep * kDeep * skin * skin)
+        convex[side_of[t]] = 1;
+    Vec<3> u = -sides[i];
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      if (convex[k]) u -= sides[k];
+    if (std::any_of(inward.begin(), inward.end(),
+                    [&](const Vec<3>& v) { return (u - v).norm() < 1e-6; }))
+      continue;
+    const Vec<3> y = foot + skin * u;
+    const auto s = surface.signed_nearest(y);
+    if (s.distance > -kDeep * skin) continue;
+    inward.push_back(u);
+    balls.push_back(climb(surface, {y, s.foot, true}));
+  }
+  if (balls.size() < 2) return {climb_to_medial_ball(surface, x)};
+  return balls;
 }
 
 }  // namespace lamella

@@ -23,6 +23,11 @@ struct MedialBall {
 /// one thin wall. The surface must not be empty.
 MedialBall climb_to_medial_ball(const Locator<3>& surface, const Vec<3>& x);
 
+/// The balls that a place is judged by: the one climbed to from x, but at a re-entrant edge of the
+/// surface one for each wall that ends there, climbed to from just below it. The surface must not
+/// be empty.
+std::vector<MedialBall> medial_balls(const Locator<3>& surface, const Vec<3>& x);
+
 /// The point of the convex hull of the given points that is nearest to the origin.
 Vec<3> smallest_in_hull(const std::vector<Vec<3>>& points);
 

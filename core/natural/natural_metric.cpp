@@ -1,7 +1,10 @@
 #include "core/natural/natural_metric.h"
 
+#include <limits>
+
 #include "core/base/parallel.h"
 #include "core/geometry/locator.h"
+#include "core/metric/intersect.h"
 #include "core/natural/ellipsoid_fit.h"
 #include "core/natural/medial_ball.h"
 
@@ -35,19 +38,24 @@ NaturalDetector::~NaturalDetector() = default;
 NaturalDetector::NaturalDetector(NaturalDetector&&) noexcept = default;
 
 Natural NaturalDetector::at(const Vec<3>& x, const NaturalParams& params) const {
-  const MedialBall ball = climb_to_medial_ball(impl_->locator, x);
-  const SeenAxes seen = EllipsoidFit::at(impl_->locator, ball.center, ball.radius, ball.across);
   const double h_max = params.h_max > 0 ? params.h_max : impl_->locator.diagonal();
-
   Natural natural;
-  natural.thickness = 2 * ball.radius;
-  natural.direction = seen.axis.col(0);
-  natural.metric.setZero();
-  for (int k = 0; k < 3; ++k) {
-    const double ratio = seen.length[k] / seen.length[0];
-    const double h =
-        std::clamp(natural.thickness * ratio / divisor(params, ratio), params.h_min, h_max);
-    natural.metric += seen.axis.col(k) * seen.axis.col(k).transpose() / (h * h);
+  natural.thickness = std::numeric_limits<double>::infinity();
+  for (const MedialBall& ball : medial_balls(impl_->locator, x)) {
+    const SeenAxes seen = EllipsoidFit::at(impl_->locator, ball.center, ball.radius, ball.across);
+    const double thickness = 2 * ball.radius;
+    Metric<3> metric = Metric<3>::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const double ratio = seen.length[k] / seen.length[0];
+      const double h = std::clamp(thickness * ratio / divisor(params, ratio), params.h_min, h_max);
+      metric += seen.axis.col(k) * seen.axis.col(k).transpose() / (h * h);
+    }
+    // Walls that meet at a re-entrant edge all get their layers there.
+    const bool first = !std::isfinite(natural.thickness);
+    natural.metric = first ? metric : intersect<3>(natural.metric, metric);
+    if (thickness >= natural.thickness) continue;
+    natural.thickness = thickness;
+    natural.direction = seen.axis.col(0);
   }
   return natural;
 }

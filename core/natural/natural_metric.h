@@ -7,7 +7,7 @@ namespace lamella {
 /// What the geometric detector says of one point.
 struct Natural {
   Metric<3> metric;
-  double thickness = 0;  ///< 2 r of the medial ball, mm
+  double thickness = 0;  ///< 2 r of the medial ball, mm; at a re-entrant edge of the smallest
   Vec<3> direction;      ///< unit, across the wall
 };
 

@@ -7,12 +7,11 @@
 #include "core/study/request.h"
 
 namespace lamella {
-
 Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& first,
                                      const MetricFunction<3>& natural, const SizingField& sizing,
                                      const Progress& progress) {
   ForecastParams params;
-  params.size_factor = 1 / kAskedFiner;
+  params.size_factor = 1 / kWantedLayers;
   params.threads = study.options.threads;
   return forecast_mesh(first, natural, sizing, params, progress);
 }

@@ -11,6 +11,9 @@ namespace lamella {
 /// unit. LayerCorrection does the rest.
 inline constexpr double kAskedFiner = 1.02;
 
+/// Layers that the average place is to have, of n, so that the poor ones have n too.
+inline constexpr double kWantedLayers = 1.1;
+
 /// Whether the study makes sense for these parts. Errors: usage.
 Result<void> check_request(const Study& study, const std::vector<Part>& parts);
 

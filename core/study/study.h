@@ -36,7 +36,8 @@ struct StudyOptions {
   int threads = 0;                          ///< 0: all cores; the mesh does not depend on it
   std::uint64_t seed = 1;
   Detector detector = Detector::geometric;  ///< who finds the wall thickness
-  bool progressive = false;  ///< asks 2, 3, .. n layers (4.4.2): less memory at the first peak
+  bool progressive = false;   ///< asks 2, 3, .. n layers (4.4.2): less memory at the first peak
+  bool until_settled = true;  ///< end when nodes and layers settle; false: all iterations
   std::optional<double> memory{};  ///< MB an adaption may take; unset: no limit
 };
 

@@ -183,6 +183,7 @@ StudyOptions read_options(const Json& json, std::string& complaint) {
     m.complain("detector", "must be \"geometric\" or \"neighborhood\"");
   m.flag("progressive", options.progressive);
   m.number("memory", options.memory);
+  m.flag("until_settled", options.until_settled);
   m.finish();
   return options;
 }
@@ -475,6 +476,7 @@ std::string study_to_json(const Study& study) {
   options["detector"] = detector_name(o.detector);
   options["progressive"] = o.progressive;
   if (o.memory) options["memory"] = *o.memory;
+  options["until_settled"] = o.until_settled;
   for (const SizingObject& object : study.sizing) json["sizing"].push_back(json_of(object));
   for (const BoundaryGroup& group : study.groups) json["groups"].push_back(json_of(group));
   for (const CutPlane& cut : study.cuts)

@@ -29,6 +29,15 @@ TEST(Layers, StructuredLayersAreCountedExactlyHoweverStretched) {
         EXPECT_NEAR(layers->at_node[i], n, 1e-6);
       }
       EXPECT_TRUE(std::isnan(layers->at_node[0]));
+      ASSERT_EQ(layers->at_facet.size(), mesh.facets.size());
+      for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        const Vec<3> across = r.transpose() * facet_normal<3>(mesh.corners(mesh.facets[f]));
+        const bool wall = std::abs(across[2]) > 0.5 * across.norm();
+        EXPECT_EQ(std::isnan(layers->at_facet[f]), !wall);
+        if (wall) {
+          EXPECT_NEAR(layers->at_facet[f], n, 1e-6);
+        }
+      }
       EXPECT_EQ(measure_layers(mesh, surface, n + 1)->stats.share_reached, 0);
     }
 }

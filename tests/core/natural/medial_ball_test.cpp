@@ -54,6 +54,54 @@ TEST(MedialBall, IsInsideAndTouches) {
   }
 }
 
+/// A T in (x, z), along y: a plate of thickness `plate` under a rib of thickness `rib`.
+ReferenceSurface<3> tee(double plate, double rib) {
+  return cell_surface(
+      {std::vector{0.0, 0.5 - rib / 2, 0.5 + rib / 2, 1.0}, {0.0, 1.0}, {0.0, plate, 0.5}},
+      [](int i, int, int k) { return i == 1 || k == 0; });
+}
+
+TEST(MedialBalls, ReentrantEdgesAreJudgedByEachWallThatEndsThere) {
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<double> u(0, 1);
+  const double plate = 0.1, rib = 0.04;
+  const Mat<3> r = turn(0.7, {1, 2, 3});
+  const auto s = moved<3>(tee(plate, rib), r, {3, 4, 5});
+  const Locator<3> locator(s);
+  for (const double side : {-0.5, 0.5})
+    for (int i = 0; i < 40; ++i) {
+      // Inside the edge, and its ends, where it meets the plane of the front or the back.
+      const double y = i == 0 ? 0 : i == 1 ? 1 : u(rng);
+      const Vec<3> x = r * Vec<3>(0.5 + side * rib, y, plate) + Vec<3>(3, 4, 5);
+      std::vector<double> thickness;
+      for (const MedialBall& ball : medial_balls(locator, x)) thickness.push_back(2 * ball.radius);
+      ASSERT_GE(thickness.size(), 2u);
+      std::sort(thickness.begin(), thickness.end());
+      EXPECT_NEAR(thickness.front(), rib, 0.1 * rib);
+      EXPECT_NEAR(thickness.back(), plate, 0.1 * plate);
+    }
+}
+
+TEST(MedialBalls, ElsewhereItIsTheOneClimbedTo) {
+  const auto s = tee(0.1, 0.04);
+  const Locator<3> locator(s);
+  std::mt19937 rng(4);
+  std::uniform_real_distribution<double> u(0, 1);
+  // Convex edges and corners, faces, and inside.
+  std::vector<Vec<3>> places{{0, 0, 0}, {1, 0, 0.1}, {0.48, 0, 0.5}};
+  for (int i = 0; i < 50; ++i) {
+    places.push_back({u(rng), 0, 0});
+    places.push_back({0.48, u(rng), 0.5});
+    places.push_back({u(rng), u(rng), 0});
+    places.push_back({u(rng), u(rng), 0.1 * u(rng)});
+  }
+  for (const Vec<3>& x : places) {
+    const auto balls = medial_balls(locator, x);
+    ASSERT_EQ(balls.size(), 1u) << x.transpose();
+    EXPECT_EQ(balls[0].radius, climb_to_medial_ball(locator, x).radius);
+  }
+}
+
 TEST(MedialBall, StartsOutsideOnCornersAndOnBladesToo) {
   const auto box = box_surface({1, 1, 0.1});
   const Locator<3> plate(box);

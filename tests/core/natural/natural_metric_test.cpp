@@ -117,6 +117,28 @@ TEST(NaturalMetric, CornerOfAnLIsABlockAndItsLegsAreWalls) {
   EXPECT_NEAR(corner.thickness, t, 0.02);
 }
 
+TEST(NaturalMetric, BothWallsOfAReentrantEdgeGetTheirLayers) {
+  // A step from 0.1 to 0.4: the edge belongs to the thin side too.
+  const double thin = 0.1, thick = 0.4;
+  const Mat<3> r = turn(0.7, {1, 2, 3});
+  const NaturalDetector step(
+      moved<3>(cell_surface({std::vector{0.0, 1.0, 2.0}, {0.0, 1.0}, {0.0, thin, thick}},
+                            [](int i, int, int k) { return i == 1 || k == 0; }),
+               r, Vec<3>::Zero()));
+  NaturalParams params;
+  params.layers = 4;
+  const auto at_step = step.at(r * Vec<3>(1, 0.45, thin), params);
+  EXPECT_NEAR(at_step.thickness, thin, 0.02 * thin);
+  const Vec<3> across = r * Vec<3>::UnitZ();
+  EXPECT_LT(1 / metric_length<3>(across, at_step.metric), 1.1 * thin / params.layers);
+  // The inner edge of an L: across one leg and across the other.
+  const NaturalDetector ell(l_surface(thin));
+  const auto corner = ell.at({thin, 0.45, thin}, params);
+  for (const int k : {0, 2})
+    EXPECT_LT(1 / metric_length<3>(Vec<3>::Unit(k), corner.metric), 1.1 * thin / params.layers);
+  EXPECT_GT(1 / metric_length<3>(Vec<3>::UnitY(), corner.metric), 4 * thin / params.layers);
+}
+
 TEST(NaturalMetric, CurvedWallsPointAcross) {
   const NaturalDetector tube(tube_surface(0.95, 1, 1, 200, 10));
   for (const double phi : {0.1, 1.0, 2.2, 4.5}) {

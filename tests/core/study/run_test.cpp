@@ -79,6 +79,21 @@ TEST(Run, AProgressiveRunAsksForMoreLayersEachTime) {
   EXPECT_LT(records[1].nodes, at_once->records[1].nodes);
 }
 
+TEST(Run, GoesOnWhenAskedNotToEndByItself) {
+  Study study;
+  study.bodies = {{"plate", 2}};
+  study.options.iterations = 5;
+  const Result<Outcome> by_itself = run(study, {plate("plate")}, real());
+  study.options.until_settled = false;
+  const Result<Outcome> all = run(study, {plate("plate")}, real());
+  ASSERT_TRUE(by_itself.ok() && all.ok());
+  const std::size_t made = by_itself->records.size();
+  ASSERT_LT(made, 6u);
+  ASSERT_EQ(all->records.size(), 6u);
+  for (std::size_t i = 0; i < made; ++i)
+    EXPECT_EQ(all->records[i].nodes, by_itself->records[i].nodes);
+}
+
 TEST(Run, PlacesBelowNAreListedAndNCountedAsTheThesisDoes) {
   Study study;
   study.bodies = {{"plate", 4}};

@@ -22,7 +22,7 @@ Study full_study() {
                   {"rest"}};
   study.groups[1].faces = {0};
   study.cuts = {{"middle", {1, 2, 3.25}, {0, 0.6, -0.8}, false}};
-  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood, true, 512};
+  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood, true, false, 512};
   return study;
 }
 
@@ -71,6 +71,7 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(back->options.detector, Detector::neighborhood);
   EXPECT_TRUE(back->options.progressive);
   EXPECT_EQ(back->options.memory, study.options.memory);
+  EXPECT_FALSE(back->options.until_settled);
   EXPECT_EQ(study_to_json(*back), study_to_json(study));
 }
 
