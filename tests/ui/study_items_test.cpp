@@ -20,6 +20,7 @@
 #include "ui/main_window.h"
 #include "ui/models/study_model.h"
 #include "ui/panels/banner.h"
+#include "ui/panels/convergence_panel.h"
 #include "ui/panels/palette.h"
 #include "ui/panels/quality_panel.h"
 #include "ui/session/command_line.h"
@@ -272,6 +273,17 @@ TEST_F(StudyItemsTest, ARangeOfQualityShowsItsElementsAlone) {
   EXPECT_EQ(window_.view().scene()->shown_elements(), poor);
   quality->set_range(std::nullopt);
   EXPECT_EQ(window_.view().scene()->shown_elements(), state->mesh.element_count());
+}
+
+TEST_F(StudyItemsTest, FiguresOfEveryIterationAreALineEach) {
+  run();
+  const QStringList lines =
+      window_.findChild<ConvergencePanel*>()->csv().split('\n', Qt::SkipEmptyParts);
+  ASSERT_EQ(lines.size(), static_cast<qsizetype>(session().iterations().size()) + 1);
+  const QStringList titles = lines[0].split(','), last = lines.back().split(',');
+  ASSERT_EQ(titles.size(), last.size());
+  EXPECT_EQ(last[titles.indexOf("nodes")].toULongLong(),
+            session().iterations().back().record.nodes);
 }
 
 TEST_F(StudyItemsTest, APlaceIsBroughtToTheMiddleOfTheView) {

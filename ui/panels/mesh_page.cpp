@@ -25,6 +25,11 @@ MeshPage::MeshPage(Session& session, QWidget* parent) : QWidget(parent), session
   form->add(tr("Iterations at most"), iterations_);
   layout->addLayout(form);
   more_ = new Folded(tr("Advanced"));
+  settled_ = new QCheckBox(tr("when settled"));
+  settled_->setObjectName("until_settled");
+  settled_->setToolTip(
+      tr("Ends once layers and nodes have settled; otherwise all iterations are made"));
+  more_->form()->add(tr("End"), settled_);
   progressive_ = new QCheckBox(tr("2, 3, .. n layers"));
   progressive_->setObjectName("progressive");
   progressive_->setToolTip(
@@ -64,6 +69,9 @@ MeshPage::MeshPage(Session& session, QWidget* parent) : QWidget(parent), session
   connect(iterations_, &QSpinBox::valueChanged, this, [edit](int value) {
     edit(tr("Iterations"), [value](StudyOptions& o) { o.iterations = value; });
   });
+  connect(settled_, &QCheckBox::toggled, this, [edit](bool on) {
+    edit(tr("End when settled"), [on](StudyOptions& o) { o.until_settled = on; });
+  });
   connect(progressive_, &QCheckBox::toggled, this, [edit](bool on) {
     edit(tr("Progressive layers"), [on](StudyOptions& o) { o.progressive = on; });
   });
@@ -84,10 +92,10 @@ MeshPage::MeshPage(Session& session, QWidget* parent) : QWidget(parent), session
 }
 
 void MeshPage::refresh() {
-  const QSignalBlocker block[] = {QSignalBlocker(chord_),       QSignalBlocker(iterations_),
-                                  QSignalBlocker(progressive_), QSignalBlocker(detector_),
-                                  QSignalBlocker(seed_),        QSignalBlocker(threads_),
-                                  QSignalBlocker(memory_)};
+  const QSignalBlocker block[] = {QSignalBlocker(chord_),    QSignalBlocker(iterations_),
+                                  QSignalBlocker(settled_),  QSignalBlocker(progressive_),
+                                  QSignalBlocker(detector_), QSignalBlocker(seed_),
+                                  QSignalBlocker(threads_),  QSignalBlocker(memory_)};
   double low = std::numeric_limits<double>::max();
   double high = 0;
   for (int k = 0; k < static_cast<int>(session_.parts().size()); ++k) {
@@ -103,6 +111,7 @@ void MeshPage::refresh() {
   const StudyOptions& o = session_.study().options;
   chord_->set_length(o.chord_tolerance);
   iterations_->setValue(o.iterations);
+  settled_->setChecked(o.until_settled);
   progressive_->setChecked(o.progressive);
   detector_->setCurrentIndex(detector_->findData(int(o.detector)));
   seed_->setValue(

@@ -26,6 +26,7 @@ class MeshPage : public QWidget {
   LengthBox* chord_;
   QSpinBox* iterations_;
   Folded* more_;
+  QCheckBox* settled_;
   QCheckBox* progressive_;
   QComboBox* detector_;
   QSpinBox* seed_;

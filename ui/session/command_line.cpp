@@ -125,6 +125,7 @@ Result<std::string> command_line(const Study& study) {
   if (o.iterations != usual.iterations) text += " --iterations " + std::to_string(o.iterations);
   if (o.threads != usual.threads) text += " --threads " + std::to_string(o.threads);
   if (o.seed != usual.seed) text += " --seed " + std::to_string(o.seed);
+  if (!o.until_settled) return cannot("that all iterations are to be made");
   if (o.memory) text += " --memory " + number(*o.memory);
   if (o.progressive) text += " --progressive";
   if (o.detector != usual.detector) text += " --detector " + std::string(detector_name(o.detector));

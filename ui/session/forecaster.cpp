@@ -13,6 +13,7 @@ std::string relevant(Study study) {
   study.cuts.clear();
   study.options.threads = 0;
   study.options.iterations = 1;
+  study.options.until_settled = true;
   study.options.memory.reset();
   for (BodySettings& body : study.bodies) {
     body.visible = true;
