@@ -5,6 +5,7 @@
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
+#include "app/cli_groups.h"
 #include "app/cli_sizing.h"
 #include "core/mesh/validate.h"
 #include "core/study/first_mesh.h"
@@ -18,7 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_study(const std::string& file) { return fs::path(file).extension() == ".json"; }
+bool is_study(const std::string& file) {
+  const fs::path ending = fs::path(file).extension();
+  return ending == ".json" || ending == ".lamella";
+}
 
 /// The study of the command line and the files it reads.
 struct Request {
@@ -45,9 +49,11 @@ Result<Request> request_of(const MeshCommand& c) {
                    "Add the parts to \"inputs\"."};
   } else {
     request.study.name = fs::path(c.inputs.front()).stem().string();
-    request.study.inputs = c.inputs;
+    for (const std::string& input : c.inputs) request.study.inputs.push_back({input});
     request.files.assign(c.inputs.begin(), c.inputs.end());
   }
+  if (c.unit)
+    for (StudyInput& input : request.study.inputs) input.unit = unit_factor(*c.unit);
   StudyOptions& o = request.study.options;
   if (c.chord_tolerance) o.chord_tolerance = c.chord_tolerance;
   if (c.angle_tolerance) o.angle_tolerance = *c.angle_tolerance;
@@ -60,6 +66,11 @@ Result<Request> request_of(const MeshCommand& c) {
   Result<std::vector<SizingObject>> sizing = sizing_of(c);
   if (!sizing) return sizing.error();
   std::move(sizing->begin(), sizing->end(), std::back_inserter(request.study.sizing));
+  for (const std::string& text : c.groups) {
+    Result<BoundaryGroup> group = read_group(text);
+    if (!group) return group.error();
+    request.study.groups.push_back(std::move(*group));
+  }
   return request;
 }
 
@@ -182,8 +193,8 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
   LoadParams load;
   load.chord_tolerance = study.options.chord_tolerance;
   load.angle_tolerance = study.options.angle_tolerance;
-  load.unit = unit_factor(c.unit);
-  Result<std::vector<Part>> parts = load_all(request->files, load, progress.portion(0, 0.05));
+  Result<std::vector<Part>> parts =
+      load_all(request->files, study, load, progress.portion(0, 0.05));
   if (!parts) return console.fail(parts.error());
   apply_to_bodies(c, *parts, study);
 
@@ -257,8 +268,9 @@ int run_generate(const GenerateCommand& c, Console& console) {
   const Progress progress = console.progress();
   LoadParams load;
   load.chord_tolerance = c.chord_tolerance;
-  load.unit = unit_factor(c.unit);
-  Result<std::vector<Part>> parts = load_all({c.surface}, load, progress.portion(0, 0.1));
+  Study study;
+  study.inputs = {{c.surface, unit_factor(c.unit)}};
+  Result<std::vector<Part>> parts = load_all({c.surface}, study, load, progress.portion(0, 0.1));
   if (!parts) return console.fail(parts.error());
 
   std::vector<MeshState> states(parts->size());

@@ -34,7 +34,8 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-void add_unit(CLI::App* app, std::string& unit) {
+template <class Text>
+void add_unit(CLI::App* app, Text& unit) {
   app->add_option("--unit", unit,
                   "Length unit of STL files, which name none: mm, cm, m or inch [mm]")
       ->option_text("UNIT")
@@ -172,6 +173,15 @@ void add_sizing(CLI::App* m, MeshCommand& mesh) {
               "isotropic");
 }
 
+void add_groups(CLI::App* m, MeshCommand& mesh) {
+  m->add_option("--group", mesh.groups,
+                "Boundary group of faces: NAME=BODY:FACE,.. by number or name (info --faces lists "
+                "them), or NAME=BODY:X,Y,Z~ANGLE for what can be reached from a point without "
+                "turning by more than ANGLE at an edge; may be repeated")
+      ->option_text("TEXT")
+      ->allow_extra_args(false);
+}
+
 }  // namespace
 
 double unit_factor(const std::string& unit) { return kUnits.at(unit); }
@@ -192,7 +202,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
 
   MeshCommand mesh;
   CLI::App* m = app.add_subcommand("mesh", "Mesh parts with n layers through their walls");
-  m->add_option("PART", mesh.inputs, "STEP or STL files, or one study (.json)")
+  m->add_option("PART", mesh.inputs, "STEP or STL files, or one study (.lamella or .json)")
       ->option_text("...")
       ->required();
   m->add_option("-o,--output", mesh.outputs,
@@ -248,6 +258,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->option_text("X")
       ->check(CLI::Range(0.0, 1.0));
   add_sizing(m, mesh);
+  add_groups(m, mesh);
   add_unit(m, mesh.unit);
   add_mesher(m, mesh.mesher);
   m->add_option("--detector", mesh.detector,

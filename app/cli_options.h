@@ -21,10 +21,11 @@ struct MeshCommand {
   std::vector<std::string> size_spheres, size_boxes, size_cylinders, size_faces;
   std::optional<double> size_gradation;
   bool size_keep_directions = false;
+  std::vector<std::string> groups;
   bool forecast = false;  ///< tell it, mesh nothing
   bool progressive = false;
   std::optional<double> memory;
-  std::string unit = "mm";
+  std::optional<std::string> unit;
   std::string mesher = "auto";
   std::optional<std::string> detector;
   std::string report;

@@ -177,8 +177,9 @@ int run_check(const CheckCommand& c, Console& console) {
 int run_info(const InfoCommand& c, Console& console) {
   LoadParams load;
   load.chord_tolerance = c.chord_tolerance;
-  load.unit = unit_factor(c.unit);
-  Result<std::vector<Part>> parts = load_all({c.part}, load, console.progress());
+  Study study;
+  study.inputs = {{c.part, unit_factor(c.unit)}};
+  Result<std::vector<Part>> parts = load_all({c.part}, study, load, console.progress());
   if (!parts) return console.fail(parts.error());
   console.say(c.part + ": " + std::to_string(parts->size()) +
               (parts->size() == 1 ? " body" : " bodies"));
@@ -233,7 +234,7 @@ int run_sample(const SampleCommand& c, Console& console) {
   if (!parts) return console.fail(parts.error());
   Study study;
   study.name = name;
-  study.inputs = {fs::path(output).filename().string()};
+  study.inputs = {{fs::path(output).filename().string()}};
   for (const Part& part : *parts) {
     BodySettings body;
     body.name = part.name;

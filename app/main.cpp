@@ -4,8 +4,10 @@
 #include <QCommandLineParser>
 #include <QEventLoop>
 #include <QPainter>
+#include <QSettings>
 #include <QStandardPaths>
 #include <QSurfaceFormat>
+#include <QTabWidget>
 #include <QTimer>
 #include <algorithm>
 #include <cmath>
@@ -21,6 +23,7 @@
 #include "ui/theme.h"
 #include "ui/views/model_view.h"
 #include "ui/views/vtk_view.h"
+#include "ui/window_tools.h"
 
 namespace lamella {
 namespace {
@@ -33,6 +36,8 @@ struct Script {
   bool flat = false;   ///< the cut goes through elements
   QString near;        ///< "x,y,z,r": brings what is within r mm of a point close
   QString color;       ///< body, quality, thickness or layers
+  QString select;      ///< group, sizing or cut: the first of them is selected
+  int tab = 0;         ///< of the results
   QString screenshot;  ///< picture of the window
   QString section;     ///< picture of the 3D view, cut open
   bool any() const { return run || !screenshot.isEmpty() || !section.isEmpty(); }
@@ -141,18 +146,23 @@ int play(ui::MainWindow& window, const Script& script) {
   const QStringList colors{"body", "quality", "thickness", "layers"};
   if (const auto color = colors.indexOf(script.color); color >= 0)
     window.view().set_color_by(ui::ColorBy(color));
+  const QStringList kinds{"body", "group", "sizing", "cut"};
+  if (const auto kind = kinds.indexOf(script.select); kind > 0)
+    session.select_item({ui::ItemKind(kind), 0});
   if (script.cut) window.view().look_at_section();
   if (script.flat) window.actions()[ui::Act::crinkle]->setChecked(false);
   if (const QStringList at = script.near.split(','); at.size() == 4)
     window.view().look_near(Vec<3>(at[0].toDouble(), at[1].toDouble(), at[2].toDouble()),
                             at[3].toDouble());
+  if (auto* tabs = window.findChild<QTabWidget*>()) tabs->setCurrentIndex(script.tab);
   if (!script.screenshot.isEmpty()) {
     wait_until([] { return true; });
     saved = save(window.grab().toImage(), script.screenshot);
   }
   if (!script.section.isEmpty()) {
     // All the window for the view, and a smooth cut: layers are counted on it.
-    for (const ui::Act act : {ui::Act::show_bodies, ui::Act::show_results, ui::Act::crinkle})
+    for (const ui::Act act :
+         {ui::Act::show_study, ui::Act::show_properties, ui::Act::show_results, ui::Act::crinkle})
       window.actions()[act]->setChecked(false);
     wait_until([] { return true; });
     window.view().look_at_section();
@@ -172,6 +182,7 @@ int main(int argc, char** argv) {
   QSurfaceFormat::setDefaultFormat(ui::VtkView::format());
   QApplication application(argc, argv);
   QApplication::setApplicationName("lamella");
+  QApplication::setOrganizationName("lamella");
   QApplication::setApplicationVersion(QString::fromStdString(std::string(version())));
   QApplication::setDesktopFileName("org.lamella.Lamella");
 
@@ -180,8 +191,9 @@ int main(int argc, char** argv) {
       "Anisotropic tetrahedral meshes with n layers through every wall.");
   parser.addHelpOption();
   parser.addVersionOption();
-  parser.addPositionalArgument("files", "STEP or STL parts, or one mesh (.msh, .vtu, .mesh)",
-                               "[FILE...]");
+  parser.addPositionalArgument(
+      "files", "a study (.lamella), STEP or STL parts, or one mesh (.msh, .vtu, .mesh)",
+      "[FILE...]");
   const auto option = [&](const QString& name, const QString& text, const QString& value = {}) {
     QCommandLineOption o(name, text, value);
     o.setFlags(QCommandLineOption::HiddenFromHelp);
@@ -193,6 +205,9 @@ int main(int argc, char** argv) {
   option("flat", "the section cuts through elements");
   option("near", "brings what is within R of a point close", "X,Y,Z,R");
   option("color", "body, quality, thickness or layers", "FIELD");
+  option("dark", "the dark theme");
+  option("select", "group, sizing or cut whose properties are shown", "KIND");
+  option("tab", "tab of the results, from 0", "K");
   option("screenshot", "picture of the window, then leave", "FILE");
   option("section", "picture of a section, then leave", "FILE");
   parser.process(application);
@@ -204,13 +219,16 @@ int main(int argc, char** argv) {
   script.flat = parser.isSet("flat");
   script.near = parser.value("near");
   script.color = parser.value("color");
+  script.select = parser.value("select");
+  script.tab = parser.value("tab").toInt();
   script.screenshot = parser.value("screenshot");
   script.section = parser.value("section");
 
-  ui::apply_theme(application);
+  ui::apply_theme(application, QSettings().value("dark", false).toBool() || parser.isSet("dark"));
   ui::MainWindow window(window_services(
       QStandardPaths::writableLocation(QStandardPaths::CacheLocation).toStdString() + "/samples"));
   window.show();
   window.open_files(parser.positionalArguments());
+  if (!script.any() && parser.positionalArguments().isEmpty()) window.tools().offer_recovery();
   return script.any() ? play(window, script) : QApplication::exec();
 }

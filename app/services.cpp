@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 
 #include "core/geometry/soup.h"
 #include "core/io/medit.h"
@@ -104,15 +103,16 @@ Result<ExportCertificate> export_stl(const fs::path& file, const MeshState& stat
 
 }  // namespace
 
-Result<std::vector<Part>> load_all(const std::vector<fs::path>& files, const LoadParams& params,
-                                   const Progress& progress) {
+Result<std::vector<Part>> load_all(const std::vector<fs::path>& files, const Study& study,
+                                   const LoadParams& params, const Progress& progress) {
   std::vector<Part> all;
-  std::map<std::string, int> uses;
   const auto count = static_cast<double>(std::max<std::size_t>(1, files.size()));
   for (std::size_t i = 0; i < files.size(); ++i) {
     const auto at = static_cast<double>(i);
+    LoadParams own = params;
+    own.unit = study.inputs[i].unit;
     Result<std::vector<Part>> parts =
-        load_parts(files[i], params, progress.portion(at / count, (at + 1) / count, "reading"));
+        load_parts(files[i], own, progress.portion(at / count, (at + 1) / count, "reading"));
     if (!parts) {
       // Whatever keeps an input from being read, it is the input that is bad.
       Error error = parts.error();
@@ -121,11 +121,7 @@ Result<std::vector<Part>> load_all(const std::vector<fs::path>& files, const Loa
     }
     for (Part& part : *parts) all.push_back(std::move(part));
   }
-  for (Part& part : all) ++uses[part.name];
-  std::map<std::string, int> number;
-  for (Part& part : all)
-    if (uses[part.name] > 1) part.name += " " + std::to_string(++number[part.name]);
-  return all;
+  return study_parts(std::move(all), study.left_out);
 }
 
 std::vector<std::shared_ptr<const VolumeMesher>> meshers_for(MesherChoice choice,

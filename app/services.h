@@ -17,10 +17,12 @@ namespace lamella {
 
 /// The one place where the programs meet the adapters: readers, meshers and exporters.
 
-/// Bodies of all files, in order. A name that occurs twice gets a number. STL files have no unit:
-/// `params.unit` tells theirs. Errors: those of load_parts; a missing file is bad_input.
+/// The bodies of the inputs (their files as paths in `files`), in order and as `study_parts` calls
+/// them. Each STL has the unit of its input. Errors: those of load_parts; a missing file is
+/// bad_input.
 Result<std::vector<Part>> load_all(const std::vector<std::filesystem::path>& files,
-                                   const LoadParams& params, const Progress& progress = {});
+                                   const Study& study, const LoadParams& params,
+                                   const Progress& progress = {});
 
 /// Which engine makes the first mesh.
 enum class MesherChoice {

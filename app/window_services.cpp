@@ -11,11 +11,12 @@ ui::Services window_services(const std::filesystem::path& sample_folder) {
                            const Progress& progress) { return load_parts(file, params, progress); };
   services.meshers = [](std::uint64_t seed) { return meshers_for(MesherChoice::automatic, seed); };
   services.run = run;
+  services.forecast = forecast_from;
   services.export_mesh = [](const std::filesystem::path& file, const MeshState& state,
                             const Study& study) -> Result<void> {
     std::vector<InputFile> inputs;
-    for (const std::string& input : study.inputs)
-      if (Result<InputFile> described = describe_input(input); described)
+    for (const StudyInput& input : study.inputs)
+      if (Result<InputFile> described = describe_input(input.file); described)
         inputs.push_back(*described);
     const Result<ExportCertificate> written = export_mesh(file, state, study, inputs);
     return written ? Result<void>() : Result<void>(written.error());

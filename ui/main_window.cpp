@@ -6,11 +6,13 @@
 #include <QFileInfo>
 #include <QLabel>
 #include <QMenuBar>
+#include <QMessageBox>
 #include <QMimeData>
 #include <QProgressBar>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
+#include <QTabBar>
 #include <QTabWidget>
 #include <QToolBar>
 #include <QToolButton>
@@ -18,15 +20,22 @@
 #include <cmath>
 
 #include "ui/actions/actions.h"
+#include "ui/commands/study_edits.h"
 #include "ui/panels/banner.h"
-#include "ui/panels/bodies_panel.h"
 #include "ui/panels/convergence_panel.h"
 #include "ui/panels/log_panel.h"
+#include "ui/panels/properties_panel.h"
+#include "ui/panels/quality_panel.h"
 #include "ui/panels/report_panel.h"
+#include "ui/panels/study_panel.h"
 #include "ui/panels/welcome.h"
+#include "ui/session/forecaster.h"
+#include "ui/session/recent_files.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 #include "ui/views/model_view.h"
+#include "ui/views/vtk_view.h"
+#include "ui/window_tools.h"
 
 namespace lamella::ui {
 namespace {
@@ -34,6 +43,11 @@ namespace {
 QString duration(double seconds) {
   const int s = static_cast<int>(std::lround(seconds));
   return QString("%1:%2").arg(s / 60).arg(s % 60, 2, 10, QChar('0'));
+}
+
+bool is_study(const QString& file) {
+  const QString suffix = QFileInfo(file).suffix().toLower();
+  return suffix == "lamella" || suffix == "json";
 }
 
 bool is_mesh(const QString& file) {
@@ -53,10 +67,12 @@ QStringList local_files(const QMimeData* data) {
 MainWindow::MainWindow(Services services, QWidget* parent)
     : QMainWindow(parent),
       session_(new Session(std::move(services), this)),
+      forecaster_(new Forecaster(*session_)),
       actions_(new Actions(this)) {
   setAcceptDrops(true);
   resize(1440, 920);
   make_body();
+  tools_ = new WindowTools(*this);
   make_menus();
   make_tool_bar();
   make_status_bar();
@@ -80,11 +96,13 @@ void MainWindow::make_body() {
   banner_ = new Banner;
   layout->addWidget(banner_);
 
-  // The bodies and their settings need the height, the plots the width that is left.
+  // The study and its properties need the height, the plots the width that is left.
   columns_ = new QSplitter(Qt::Horizontal);
   rows_ = new QSplitter(Qt::Vertical);
-  bodies_ = new BodiesPanel(*session_, *actions_);
-  bodies_->setMinimumWidth(300);
+  study_ = new StudyPanel(*session_, *actions_);
+  study_->setMinimumWidth(250);
+  properties_ = new PropertiesPanel(*session_, *forecaster_, *actions_);
+  properties_->setMinimumWidth(300);
   stack_ = new QStackedWidget;
   welcome_ = new Welcome(*actions_);
   view_ = new ModelView(*session_, *actions_);
@@ -97,7 +115,12 @@ void MainWindow::make_body() {
   inner->setContentsMargins(1, 1, 1, 1);
   results_ = new QTabWidget;
   results_->setDocumentMode(true);
+  results_->tabBar()->setDrawBase(false);
   results_->addTab(new ConvergencePanel(*session_), tr("Convergence"));
+  auto* quality = new QualityPanel(*session_);
+  results_->addTab(quality, tr("Quality"));
+  connect(quality, &QualityPanel::range_changed, this,
+          [this, quality] { view_->set_quality_range(quality->range()); });
   results_->addTab(new ReportPanel(*session_), tr("Report"));
   auto* log = new LogPanel;
   results_->addTab(log, tr("Log"));
@@ -106,10 +129,11 @@ void MainWindow::make_body() {
   rows_->addWidget(panel);
   rows_->setStretchFactor(0, 1);
   rows_->setSizes({570, 230});
-  columns_->addWidget(bodies_);
+  columns_->addWidget(study_);
   columns_->addWidget(rows_);
+  columns_->addWidget(properties_);
   columns_->setStretchFactor(1, 1);
-  columns_->setSizes({336, 1100});
+  columns_->setSizes({280, 840, 310});
   for (QSplitter* splitter : {rows_, columns_}) {
     splitter->setHandleWidth(8);
     splitter->setChildrenCollapsible(false);
@@ -117,6 +141,8 @@ void MainWindow::make_body() {
   layout->addWidget(columns_, 1);
   setCentralWidget(central);
   connect(session_, &Session::logged, log, &LogPanel::add);
+  connect(welcome_, &Welcome::file_chosen, this,
+          [this](const QString& file) { open_files({file}); });
   connect(welcome_, &Welcome::sample_chosen, this, [this](const QString& name) {
     banner_->hide();
     session_->open_sample(name.toStdString());
@@ -135,10 +161,14 @@ void MainWindow::make_menus() {
     }
   };
   constexpr Act line = Act::count;
-  fill(tr("&File"), {Act::open, Act::add, Act::remove, line, Act::export_mesh, Act::save_picture,
-                     line, Act::quit});
-  fill(tr("&Edit"), {Act::undo, Act::redo});
-  fill(tr("&Mesh"), {Act::run, Act::cancel});
+  fill(tr("&File"), {Act::open, Act::add, line, Act::save, Act::save_as, line, Act::export_mesh,
+                     Act::save_picture, Act::copy_command, line, Act::preferences, Act::quit});
+  menuBar()->actions().front()->menu()->insertMenu((*actions_)[Act::add], tools_->recent_menu());
+  fill(tr("&Edit"), {Act::undo, Act::redo, line, Act::remove});
+  fill(tr("&Study"),
+       {Act::add_group, Act::pick_faces, Act::pick_flood, line, Act::correct_near,
+        Act::correct_face, Act::add_sphere, Act::add_box, Act::add_cylinder, line, Act::add_cut});
+  fill(tr("&Mesh"), {Act::run, Act::cancel, Act::forecast});
   fill(tr("&View"), {Act::section,
                      Act::section_x,
                      Act::section_y,
@@ -150,7 +180,11 @@ void MainWindow::make_menus() {
                      Act::features,
                      Act::perspective,
                      line,
+                     Act::measure,
+                     Act::ellipsoid,
+                     line,
                      Act::fit,
+                     Act::box_zoom,
                      Act::view_iso,
                      Act::view_front,
                      Act::view_back,
@@ -159,9 +193,10 @@ void MainWindow::make_menus() {
                      Act::view_top,
                      Act::view_bottom,
                      line,
-                     Act::show_bodies,
+                     Act::show_study,
+                     Act::show_properties,
                      Act::show_results});
-  fill(tr("&Help"), {Act::about});
+  fill(tr("&Help"), {Act::search, Act::shortcuts, line, Act::about});
 }
 
 void MainWindow::make_tool_bar() {
@@ -177,9 +212,13 @@ void MainWindow::make_tool_bar() {
     if (name) bar->widgetForAction(action)->setObjectName(name);
   };
   add(Act::open, tr("Open"));
+  add(Act::save, tr("Save"));
   bar->addSeparator();
   add(Act::run, tr("Run"), "run");
   add(Act::cancel, tr("Cancel"));
+  bar->addSeparator();
+  add(Act::add_group, tr("Group"));
+  add(Act::correct_near, tr("Correct near"));
   bar->addSeparator();
   add(Act::section, tr("Section"));
   add(Act::export_mesh, tr("Export"));
@@ -231,6 +270,10 @@ void MainWindow::connect_session() {
   connect(session_, &Session::failed, this, [this](const QString& message, const QString& hint) {
     banner_->show_message(Banner::Kind::error, message, hint);
   });
+  connect(session_, &Session::saved, this, [this](const QString& file) {
+    statusBar()->showMessage(tr("Saved %1").arg(file), 4000);
+  });
+  connect(forecaster_, &Forecaster::changed, this, &MainWindow::update_status);
   connect(session_, &Session::exported, this, [this](const QString& file) {
     banner_->show_message(Banner::Kind::done, tr("Mesh written"), file);
   });
@@ -250,21 +293,28 @@ void MainWindow::connect_actions() {
   connect(act[Act::open], &QAction::triggered, this, [this] { ask_open(false); });
   connect(act[Act::add], &QAction::triggered, this, [this] { ask_open(true); });
   connect(act[Act::remove], &QAction::triggered, this,
-          [this] { session_->remove_part(session_->selected()); });
+          [this] { session_->remove_item(session_->item()); });
+  connect(act[Act::save], &QAction::triggered, this, [this] { save(false); });
+  connect(act[Act::save_as], &QAction::triggered, this, [this] { save(true); });
+  connect(act[Act::forecast], &QAction::triggered, forecaster_, &Forecaster::ask);
+  connect(act[Act::add_group], &QAction::triggered, this, [this] {
+    const bool one = session_->parts().size() == 1;
+    add_group(*session_, GroupKind::gate, one ? session_->body(0).name : std::string(), {});
+    (*actions_)[Act::pick_faces]->setChecked(true);
+  });
+  for (const Act kind : {Act::add_sphere, Act::add_box, Act::add_cylinder})
+    connect(act[kind], &QAction::triggered, this, [this, kind] { add_size(kind); });
   connect(act[Act::export_mesh], &QAction::triggered, this, &MainWindow::ask_export);
   connect(act[Act::save_picture], &QAction::triggered, this, &MainWindow::ask_picture);
   connect(act[Act::quit], &QAction::triggered, this, &QWidget::close);
-  connect(act[Act::run], &QAction::triggered, this, [this] {
-    banner_->hide();
-    results_->setCurrentIndex(0);
-    session_->run();
-  });
+  connect(act[Act::run], &QAction::triggered, this, [this] { start_run(); });
   connect(act[Act::cancel], &QAction::triggered, session_, &Session::cancel);
   QUndoStack* undo = session_->undo_stack();
   connect(act[Act::undo], &QAction::triggered, undo, &QUndoStack::undo);
   connect(act[Act::redo], &QAction::triggered, undo, &QUndoStack::redo);
   connect(undo, &QUndoStack::indexChanged, this, &MainWindow::update_actions);
-  connect(act[Act::show_bodies], &QAction::toggled, bodies_, &QWidget::setVisible);
+  connect(act[Act::show_study], &QAction::toggled, study_, &QWidget::setVisible);
+  connect(act[Act::show_properties], &QAction::toggled, properties_, &QWidget::setVisible);
   connect(act[Act::show_results], &QAction::toggled, results_->parentWidget(),
           &QWidget::setVisible);
   connect(act[Act::about], &QAction::triggered, this, [this] {
@@ -281,7 +331,15 @@ void MainWindow::update_actions() {
   const bool shown = !session_->empty();
   act[Act::open]->setEnabled(idle);
   act[Act::add]->setEnabled(idle && !session_->parts().empty());
-  act[Act::remove]->setEnabled(idle && session_->selected() >= 0);
+  const bool parts = !session_->parts().empty();
+  act[Act::remove]->setEnabled(idle && session_->item().index >= 0);
+  for (const Act a : {Act::save, Act::save_as}) act[a]->setEnabled(idle && parts);
+  act[Act::copy_command]->setEnabled(parts);
+  act[Act::forecast]->setEnabled(session_->can_run() && session_->services().forecast);
+  for (int a = int(Act::add_group); a <= int(Act::correct_face); ++a)
+    act[Act(a)]->setEnabled(parts);
+  for (int a = int(Act::measure); a <= int(Act::box_zoom); ++a) act[Act(a)]->setEnabled(shown);
+  act[Act::add_cut]->setEnabled(shown);
   act[Act::run]->setEnabled(session_->can_run());
   act[Act::cancel]->setEnabled(!idle && !session_->cancelling());
   act[Act::export_mesh]->setEnabled(idle && session_->shown_state() != nullptr);
@@ -298,9 +356,11 @@ void MainWindow::update_actions() {
 }
 
 void MainWindow::update_title() {
-  setWindowTitle(session_->empty()
-                     ? tr("Lamella")
-                     : tr("%1 – Lamella").arg(QString::fromStdString(session_->study().name)));
+  const QString name = session_->file().empty()
+                           ? QString::fromStdString(session_->study().name)
+                           : QString::fromStdString(session_->file().stem().string());
+  setWindowTitle(session_->empty() ? tr("Lamella") : tr("%1[*] – Lamella").arg(name));
+  setWindowModified(session_->modified());
 }
 
 void MainWindow::update_status() {
@@ -322,6 +382,10 @@ void MainWindow::update_status() {
   } else {
     counts_->clear();
   }
+  if (forecaster_->bodies() && session_->shown() < 0)
+    counts_->setText(counts_->text() + tr("     forecast: %L1 nodes, %L2 MB")
+                                           .arg(forecaster_->total().nodes, 0, 'f', 0)
+                                           .arg(forecaster_->total().memory, 0, 'f', 0));
   progress_->setVisible(activity != Activity::idle);
   if (activity != Activity::idle) {
     progress_->setValue(0);
@@ -333,6 +397,8 @@ void MainWindow::update_status() {
   }
   if (session_->empty()) {
     state_->setText(tr("Ready"));
+  } else if (forecaster_->busy()) {
+    state_->setText(tr("Counting the mesh to expect…"));
   } else if (session_->outdated()) {
     state_->setText(tr("Settings changed since this mesh: run again"));
   } else if (const auto& outcome = session_->outcome()) {
@@ -379,7 +445,13 @@ void MainWindow::report_run() {
 void MainWindow::open_files(const QStringList& files, bool add) {
   if (files.isEmpty()) return;
   banner_->hide();
+  if (!add && !may_drop()) return;
   folder_ = QFileInfo(files.front()).absolutePath();
+  for (const QString& file : files) remember_file(file);
+  if (is_study(files.front())) {
+    session_->open_study(std::filesystem::absolute(files.front().toStdString()));
+    return;
+  }
   if (is_mesh(files.front())) {
     session_->open_mesh(files.front().toStdString());
     return;
@@ -392,9 +464,79 @@ void MainWindow::open_files(const QStringList& files, bool add) {
 void MainWindow::ask_open(bool add) {
   const QStringList files =
       QFileDialog::getOpenFileNames(this, add ? tr("Add bodies") : tr("Open"), folder_,
-                                    tr("Parts (*.step *.stp *.stl *.STEP *.STP *.STL);;Meshes "
-                                       "(*.msh *.vtu *.mesh);;All files (*)"));
+                                    add ? tr("Parts (*.step *.stp *.stl *.STEP *.STP *.STL)")
+                                        : tr("Studies and parts (*.lamella *.json *.step *.stp "
+                                             "*.stl *.STEP *.STP *.STL);;Meshes (*.msh *.vtu "
+                                             "*.mesh);;All files (*)"));
   open_files(files, add);
+}
+
+bool MainWindow::save(bool ask_name) {
+  QString file = QString::fromStdString(session_->file().string());
+  if (file.isEmpty() || ask_name || !is_study(file)) {
+    const QString name = QString::fromStdString(session_->study().name) + ".lamella";
+    file = QFileDialog::getSaveFileName(this, tr("Save study"),
+                                        folder_.isEmpty() ? name : folder_ + "/" + name,
+                                        tr("Studies (*.lamella)"));
+    if (file.isEmpty()) return false;
+    if (QFileInfo(file).suffix().isEmpty()) file += ".lamella";
+  }
+  session_->save(file.toStdString());
+  return !session_->modified();
+}
+
+bool MainWindow::may_drop() {
+  if (!session_->modified()) return true;
+  QMessageBox box(QMessageBox::Question, tr("Unsaved changes"),
+                  tr("The study “%1” has changes that are not saved.")
+                      .arg(QString::fromStdString(session_->study().name)),
+                  QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
+  box.setInformativeText(tr("Save them?"));
+  box.setDefaultButton(QMessageBox::Save);
+  const int answer = box.exec();
+  return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save(false));
+}
+
+void MainWindow::add_size(Act kind) {
+  const int part = std::max(0, session_->selected());
+  const Part& body = session_->parts()[static_cast<std::size_t>(part)];
+  Vec<3> low = body.surface.points.front(), high = low;
+  for (const Vec<3>& p : body.surface.points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Vec<3> middle = 0.5 * (low + high);
+  const double reach = 0.15 * (high - low).norm();
+  if (kind == Act::add_sphere)
+    add_sizing(*session_, body.name, tr("sphere"), SphereShape{middle, reach});
+  else if (kind == Act::add_box)
+    add_sizing(*session_, body.name, tr("box"), BoxShape{middle, Vec<3>(0.3 * (high - low))});
+  else
+    add_sizing(*session_, body.name, tr("cylinder"),
+               CylinderShape{middle - reach * Vec<3>::UnitZ(), middle + reach * Vec<3>::UnitZ(),
+                             0.5 * reach});
+}
+
+void MainWindow::start_run() {
+  const std::optional<double>& budget = session_->study().options.memory;
+  if (budget && forecaster_->total().memory > *budget) {
+    const auto without_budget = [this] {
+      Study study = session_->study();
+      study.options.memory.reset();
+      session_->edit(tr("Drop the memory budget"), std::move(study));
+      start_run();
+    };
+    banner_->show_message(Banner::Kind::info,
+                          tr("This mesh takes about %L1 MB, more than the budget of %L2 MB.")
+                              .arg(forecaster_->total().memory, 0, 'f', 0)
+                              .arg(*budget, 0, 'f', 0),
+                          tr("Ask for fewer layers, or raise the budget under Advanced."),
+                          {{tr("Run without a budget"), without_budget}});
+    return;
+  }
+  banner_->hide();
+  results_->setCurrentIndex(0);
+  session_->run();
 }
 
 void MainWindow::ask_export() {
@@ -416,12 +558,24 @@ void MainWindow::ask_export() {
 }
 
 void MainWindow::ask_picture() {
+  const QSize seen = view_->vtk_view() ? view_->vtk_view()->size() * devicePixelRatioF() : QSize();
+  const auto wide = [&](int width) {
+    return QSize(width, seen.width() > 0 ? width * seen.height() / seen.width() : width);
+  };
+  const QSize sizes[] = {seen, wide(1920), wide(3840), wide(7680)};
+  QStringList kinds;
+  for (const QSize& size : sizes)
+    kinds << tr("PNG, %1 × %2 pixels (*.png)").arg(size.width()).arg(size.height());
   const QString name = QString::fromStdString(session_->study().name) + ".png";
-  const QString file = QFileDialog::getSaveFileName(this, tr("Save picture"),
-                                                    folder_.isEmpty() ? name : folder_ + "/" + name,
-                                                    tr("PNG picture (*.png)"));
+  QString kind;
+  QString file = QFileDialog::getSaveFileName(this, tr("Save picture"),
+                                              folder_.isEmpty() ? name : folder_ + "/" + name,
+                                              kinds.join(";;"), &kind);
   if (file.isEmpty()) return;
-  if (view_->picture().save(file)) {
+  if (QFileInfo(file).suffix().isEmpty()) file += ".png";
+  const auto chosen = std::max<qsizetype>(0, kinds.indexOf(kind));
+  const QImage image = chosen == 0 ? view_->picture() : view_->picture(sizes[chosen]);
+  if (image.save(file)) {
     banner_->show_message(Banner::Kind::done, tr("Picture written"), file);
   } else {
     banner_->show_message(Banner::Kind::error, tr("%1 could not be written.").arg(file),
@@ -444,6 +598,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+  if (!may_drop()) return event->ignore();
   session_->cancel();
   event->accept();
 }

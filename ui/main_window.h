@@ -2,6 +2,7 @@
 
 #include <QMainWindow>
 
+#include "ui/actions/actions.h"
 #include "ui/services.h"
 
 class QLabel;
@@ -12,14 +13,17 @@ class QTabWidget;
 
 namespace lamella::ui {
 
-class Actions;
 class Banner;
-class BodiesPanel;
+class Forecaster;
 class ModelView;
+class PropertiesPanel;
 class Session;
+class StudyPanel;
 class Welcome;
+class WindowTools;
 
-/// The window: bodies on the left, the model in the middle, results below.
+/// The window: the study on the left, the model in the middle with results below it, and the
+/// properties of what is selected on the right.
 class MainWindow : public QMainWindow {
   Q_OBJECT
 
@@ -31,9 +35,11 @@ class MainWindow : public QMainWindow {
   Actions& actions() { return *actions_; }
   ModelView& view() { return *view_; }
   Banner& banner() { return *banner_; }
+  Forecaster& forecaster() { return *forecaster_; }
+  WindowTools& tools() { return *tools_; }
 
-  /// Opens parts (STEP, STL) or one mesh, by extension; as the menu, a drop and the command line
-  /// do.
+  /// Opens a study, parts (STEP, STL) or one mesh, by extension; as the menu, a drop and the
+  /// command line do.
   void open_files(const QStringList& files, bool add = false);
 
  protected:
@@ -54,16 +60,25 @@ class MainWindow : public QMainWindow {
   void update_status();
   void show_progress(double fraction, const QString& phase, double seconds_left);
   void ask_open(bool add);
+  /// True when the study was saved, or there was nothing to save; asks for a name if it has none.
+  bool save(bool ask_name);
+  /// False when the user would rather keep what is unsaved.
+  bool may_drop();
+  void add_size(Act kind);
+  void start_run();
   void ask_export();
   void ask_picture();
   void report_run();
 
   Session* session_;
+  Forecaster* forecaster_;
   Actions* actions_;
+  WindowTools* tools_ = nullptr;
   ModelView* view_ = nullptr;
   Banner* banner_ = nullptr;
   Welcome* welcome_ = nullptr;
-  BodiesPanel* bodies_ = nullptr;
+  StudyPanel* study_ = nullptr;
+  PropertiesPanel* properties_ = nullptr;
   QStackedWidget* stack_ = nullptr;
   QTabWidget* results_ = nullptr;
   QSplitter* columns_ = nullptr;

@@ -11,6 +11,7 @@
 #include "core/base/result.h"
 #include "core/cad/load_parts.h"
 #include "core/optimize/generate.h"
+#include "core/study/forecast.h"
 #include "core/study/run.h"
 
 namespace lamella::ui {
@@ -29,6 +30,10 @@ struct Services {
                                 const std::vector<std::shared_ptr<const VolumeMesher>>&, Progress,
                                 IterationSink)>
       run;
+  /// The mesh to expect, from first meshes made before, see core/study/forecast.h.
+  std::function<Result<std::vector<BodyForecast>>(const std::vector<FirstMesh>&, const Study&,
+                                                  const std::vector<Part>&, const Progress&)>
+      forecast;
   /// Writes a mesh; the format follows the extension (.msh, .vtu, .mesh).
   std::function<Result<void>(const std::filesystem::path&, const MeshState&, const Study&)>
       export_mesh;

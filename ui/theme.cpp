@@ -1,13 +1,17 @@
 #include "ui/theme.h"
 
 #include <QApplication>
+#include <QDir>
 #include <QFile>
 #include <QFontDatabase>
 #include <QPainter>
 #include <QPalette>
+#include <QRegularExpression>
+#include <QStandardPaths>
 #include <QStyleFactory>
 #include <QSvgRenderer>
 #include <algorithm>
+#include <vector>
 
 // Resources of a static library are only linked when asked for, outside of any namespace.
 static void load_resources() { Q_INIT_RESOURCE(lamella); }
@@ -15,19 +19,76 @@ static void load_resources() { Q_INIT_RESOURCE(lamella); }
 namespace lamella::ui {
 namespace {
 
+/// Lightness turned over: paper becomes night, ink becomes paper, hues stay.
+QColor turned(const QColor& color) {
+  float h = 0, s = 0, l = 0;
+  color.getHslF(&h, &s, &l);
+  return QColor::fromHslF(std::max(h, 0.0F), s * 0.85F, 0.12F + 0.78F * (1 - l));
+}
+
+/// Every "#rrggbb" of the text in the colors of the dark theme; pure white of an icon stays.
+QString turned(QString text, bool white_too) {
+  static const QRegularExpression hex("#[0-9a-fA-F]{6}\\b");
+  QString out;
+  qsizetype from = 0;
+  for (auto it = hex.globalMatch(text); it.hasNext();) {
+    const QRegularExpressionMatch match = it.next();
+    out += text.mid(from, match.capturedStart() - from);
+    const QColor color(match.captured());
+    out += !white_too && color == QColor(Qt::white) ? match.captured() : turned(color).name();
+    from = match.capturedEnd();
+  }
+  return out + text.mid(from);
+}
+
+QByteArray svg_of(const QString& path) {
+  QFile file(path);
+  if (!file.open(QIODevice::ReadOnly)) return {};
+  const QByteArray svg = file.readAll();
+  return theme::dark ? turned(QString::fromUtf8(svg), false).toUtf8() : svg;
+}
+
 QPixmap render(const QString& path, int size, double opacity) {
   QPixmap pixmap(size, size);
   pixmap.fill(Qt::transparent);
   QPainter painter(&pixmap);
   painter.setOpacity(opacity);
-  QSvgRenderer(path).render(&painter);
+  QSvgRenderer(svg_of(path)).render(&painter);
   return pixmap;
+}
+
+void choose_colors(bool dark) {
+  static const std::vector<std::pair<QColor*, QColor>> light = [] {
+    std::vector<std::pair<QColor*, QColor>> all;
+    for (QColor* c : {&theme::text, &theme::soft_text, &theme::faint_text, &theme::window,
+                      &theme::panel, &theme::border, &theme::accent, &theme::good, &theme::warning,
+                      &theme::danger, &theme::missing})
+      all.emplace_back(c, *c);
+    return all;
+  }();
+  theme::dark = dark;
+  for (const auto& [color, value] : light) *color = dark ? turned(value) : value;
+}
+
+/// The icons that the style sheet names, in the colors of the theme, in a folder of their own.
+QString icons_of_sheet(const QString& sheet) {
+  const QString folder =
+      QStandardPaths::writableLocation(QStandardPaths::CacheLocation) + "/dark-icons/";
+  QDir().mkpath(folder);
+  static const QRegularExpression url(":/icons/([a-z-]+)\\.svg");
+  for (auto it = url.globalMatch(sheet); it.hasNext();) {
+    const QString name = it.next().captured(1) + ".svg";
+    QFile file(folder + name);
+    if (file.open(QIODevice::WriteOnly)) file.write(svg_of(":/icons/" + name));
+  }
+  return folder;
 }
 
 }  // namespace
 
-void apply_theme(QApplication& application) {
+void apply_theme(QApplication& application, bool dark) {
   load_resources();
+  choose_colors(dark);
   application.setStyle(QStyleFactory::create("Fusion"));
 
   QFont font = application.font();
@@ -52,16 +113,23 @@ void apply_theme(QApplication& application) {
   palette.setColor(QPalette::PlaceholderText, theme::faint_text);
   palette.setColor(QPalette::Highlight, theme::accent);
   palette.setColor(QPalette::HighlightedText, Qt::white);
-  palette.setColor(QPalette::ToolTipBase, theme::text);
+  palette.setColor(QPalette::ToolTipBase, QColor(0x1f, 0x29, 0x33));
   palette.setColor(QPalette::ToolTipText, Qt::white);
   palette.setColor(QPalette::Link, theme::accent);
   for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
-    palette.setColor(QPalette::Disabled, role, QColor(0xb4, 0xbd, 0xc7));
+    palette.setColor(QPalette::Disabled, role,
+                     dark ? turned(QColor(0xb4, 0xbd, 0xc7)) : QColor(0xb4, 0xbd, 0xc7));
   application.setPalette(palette);
 
   QFile sheet(":/lamella.qss");
-  if (sheet.open(QIODevice::ReadOnly))
-    application.setStyleSheet(QString::fromUtf8(sheet.readAll()));
+  if (sheet.open(QIODevice::ReadOnly)) {
+    QString text = QString::fromUtf8(sheet.readAll());
+    if (dark) {
+      const QString folder = icons_of_sheet(text);
+      text = turned(text, true).replace(":/icons/", folder);
+    }
+    application.setStyleSheet(text);
+  }
   application.setWindowIcon(QIcon(":/icons/lamella.svg"));
 }
 
@@ -88,6 +156,13 @@ QColor body_color(int index, const std::array<double, 3>& rgb) {
                                              QColor(0x8f, 0xbf, 0x9f), QColor(0xc9, 0x8b, 0xa6),
                                              QColor(0x9d, 0x94, 0xc9), QColor(0xd4, 0xc3, 0x6a),
                                              QColor(0x7d, 0xbd, 0xc0), QColor(0xb5, 0xa4, 0x94)};
+  return palette[static_cast<std::size_t>(index) % palette.size()];
+}
+
+QColor group_color(int index) {
+  static const std::array<QColor, 6> palette{QColor(0xe4, 0x57, 0x2e), QColor(0x2e, 0x86, 0xab),
+                                             QColor(0x9a, 0x4c, 0xb0), QColor(0x3c, 0x96, 0x3c),
+                                             QColor(0xd6, 0x9a, 0x00), QColor(0xc2, 0x2d, 0x6b)};
   return palette[static_cast<std::size_t>(index) % palette.size()];
 }
 

@@ -16,32 +16,53 @@ Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& f
   return forecast_mesh(first, natural, sizing, params, progress);
 }
 
-Result<std::vector<BodyForecast>> forecast_study(
-    const Study& study, const std::vector<Part>& parts,
-    const std::vector<std::shared_ptr<const VolumeMesher>>& meshers, const Progress& progress) {
+Result<std::vector<FirstMesh>> first_meshes(
+    const std::vector<Part>& parts, const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+    const Progress& progress) {
+  std::vector<FirstMesh> meshes;
+  const auto count = static_cast<double>(parts.size());
+  for (const Part& part : parts) {
+    const auto at = static_cast<double>(meshes.size());
+    Result<FirstMesh> first =
+        first_mesh(part, meshers, progress.portion(at / count, (at + 1) / count, "first mesh"));
+    if (!first) return first.error();
+    meshes.push_back(std::move(*first));
+  }
+  return meshes;
+}
+
+Result<std::vector<BodyForecast>> forecast_from(const std::vector<FirstMesh>& first,
+                                                const Study& study, const std::vector<Part>& parts,
+                                                const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   if (Result<void> good = check_request(study, parts); !good) return good.error();
   std::vector<BodyForecast> bodies;
   const auto count = static_cast<double>(parts.size());
   for (const Part& part : parts) {
-    const auto at = static_cast<double>(bodies.size());
-    const Progress share = progress.portion(at / count, (at + 1) / count);
+    const std::size_t b = bodies.size();
+    const auto at = static_cast<double>(b);
     Result<SizingField> sizing = SizingField::make(sizing_of(study, part.name), part.surface);
     if (!sizing) return sizing.error();
-    Result<FirstMesh> first = first_mesh(part, meshers, share.portion(0, 0.7, "first mesh"));
-    if (!first) return first.error();
-
     const auto start = Clock::now();
     const NaturalDetector detector(part.surface);
     const NaturalParams natural = natural_params(study, part);
     Result<SizingForecast> mesh = forecast_body(
-        study, first->mesh, [&](const Vec<3>& x) { return detector.at(x, natural).metric; },
-        *sizing, share.portion(0.7, 1));
+        study, first[b].mesh, [&](const Vec<3>& x) { return detector.at(x, natural).metric; },
+        *sizing, progress.portion(at / count, (at + 1) / count));
     if (!mesh) return mesh.error();
     bodies.push_back(
         {part.name, *mesh, std::chrono::duration<double>(Clock::now() - start).count()});
   }
   return bodies;
+}
+
+Result<std::vector<BodyForecast>> forecast_study(
+    const Study& study, const std::vector<Part>& parts,
+    const std::vector<std::shared_ptr<const VolumeMesher>>& meshers, const Progress& progress) {
+  if (Result<void> good = check_request(study, parts); !good) return good.error();
+  Result<std::vector<FirstMesh>> first = first_meshes(parts, meshers, progress.portion(0, 0.7));
+  if (!first) return first.error();
+  return forecast_from(*first, study, parts, progress.portion(0.7, 1));
 }
 
 }  // namespace lamella

@@ -5,6 +5,7 @@
 #include "core/base/progress.h"
 #include "core/optimize/generate.h"
 #include "core/sizing/forecast.h"
+#include "core/study/first_mesh.h"
 #include "core/study/study.h"
 
 namespace lamella {
@@ -27,5 +28,16 @@ Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& f
 Result<std::vector<BodyForecast>> forecast_study(
     const Study& study, const std::vector<Part>& parts,
     const std::vector<std::shared_ptr<const VolumeMesher>>& meshers, const Progress& progress = {});
+
+/// The first mesh of every part, for forecasts of several studies of them. Errors: those of
+/// `first_mesh`.
+Result<std::vector<FirstMesh>> first_meshes(
+    const std::vector<Part>& parts, const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+    const Progress& progress = {});
+
+/// The same from first meshes made before, one a part.
+Result<std::vector<BodyForecast>> forecast_from(const std::vector<FirstMesh>& first,
+                                                const Study& study, const std::vector<Part>& parts,
+                                                const Progress& progress = {});
 
 }  // namespace lamella

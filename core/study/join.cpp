@@ -4,8 +4,32 @@
 
 namespace lamella {
 
+namespace {
+
+std::int32_t group_called(const std::string& name, std::vector<std::string>& groups) {
+  auto it = std::find(groups.begin(), groups.end(), name);
+  if (it == groups.end()) it = groups.insert(it, name);
+  return static_cast<std::int32_t>(it - groups.begin());
+}
+
+/// The facets from number `first` on, whose faces are those of a grouped surface, get their groups
+/// and the faces of the part.
+void put_in_groups(const FaceGroups& of, const std::string& walls, std::size_t first,
+                   SimplexMesh<3>& mesh) {
+  for (std::size_t f = first; f < mesh.facet_face.size(); ++f) {
+    const auto face = static_cast<std::size_t>(mesh.facet_face[f]);
+    const std::int32_t group = of.face_group[face];
+    mesh.facet_group.push_back(
+        group_called(group < 0 ? walls : of.names[static_cast<std::size_t>(group)], mesh.groups));
+    mesh.facet_face[f] = of.cad_face[face];
+  }
+}
+
+}  // namespace
+
 std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodies,
-                                      const std::vector<std::string>& names) {
+                                      const std::vector<std::string>& names,
+                                      const std::vector<const FaceGroups*>& groups) {
   auto joined = std::make_shared<MeshState>();
   SimplexMesh<3>& mesh = joined->mesh;
   mesh.bodies = names;
@@ -31,9 +55,13 @@ std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodie
       mesh.facets.push_back(facet);
     }
     mesh.element_body.resize(mesh.elements.size(), id);
-    mesh.facet_group.resize(mesh.facets.size(), id);
+    const std::size_t first_facet = mesh.facet_face.size();
     append(mesh.facet_face, body.mesh.facet_face, 0);
-    mesh.groups.push_back(bodies.size() == 1 ? "walls" : names[b] + " walls");
+    const std::string walls = bodies.size() == 1 ? "walls" : names[b] + " walls";
+    if (!groups.empty() && groups[b])
+      put_in_groups(*groups[b], walls, first_facet, mesh);
+    else
+      mesh.facet_group.resize(mesh.facets.size(), group_called(walls, mesh.groups));
     append(joined->metric, body.metric, 1);
     append(joined->thickness, body.thickness, 1);
     append(joined->layers, body.layers, 1);

@@ -7,9 +7,12 @@
 namespace lamella {
 
 /// All bodies in one mesh with their fields, in the order given. Nodes are not shared between
-/// bodies. The boundary group of a body is "NAME walls", or "walls" when there is one body only.
+/// bodies. The boundary of a body belongs to the groups that `groups` (one a body, or none at all)
+/// has for its faces, and else to "NAME walls", or "walls" when there is one body only. Groups of
+/// one name on several bodies become one.
 std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodies,
-                                      const std::vector<std::string>& names);
+                                      const std::vector<std::string>& names,
+                                      const std::vector<const FaceGroups*>& groups = {});
 
 /// The record of all bodies together, of one record each: sums, means weighted by elements, the
 /// worst quality; of the layers the mean weighted by places, and the smallest 5 % quantile and

@@ -211,8 +211,12 @@ Result<void> write_sidecar(const Study& study, const SimplexMesh<3>& mesh,
     json["bodies"].push_back(std::move(body));
   }
   json["groups"] = Json::array();
-  for (std::size_t g = 0; g < mesh.groups.size(); ++g)
-    json["groups"].push_back({{"reference", g + 1}, {"name", mesh.groups[g]}});
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
+    Json group = {{"reference", g + 1}, {"name", mesh.groups[g]}};
+    for (const BoundaryGroup& asked : study.groups)
+      if (asked.name == mesh.groups[g]) group["kind"] = group_kind_name(asked.kind);
+    json["groups"].push_back(std::move(group));
+  }
   json["inputs"] = inputs_json(inputs);
   return write_file(file, dump(json, 2) + "\n");
 }

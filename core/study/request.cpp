@@ -32,19 +32,37 @@ Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
     if (body.h_max && !(*body.h_max >= body.h_min.value_or(0) && *body.h_max > 0))
       return usage(who + "h_max must be positive and not below h_min.", "Leave it out for none.");
   }
+  const auto known_body = [&](const std::string& name) {
+    return std::any_of(parts.begin(), parts.end(),
+                       [&](const Part& part) { return part.name == name; });
+  };
+  const auto body_list = [&] {
+    std::string known;
+    for (const Part& part : parts) known += (known.empty() ? "\"" : ", \"") + part.name + "\"";
+    return "The bodies are " + known + ".";
+  };
   for (const SizingObject& object : study.sizing) {
     if (object.body.empty() && parts.size() > 1 && std::holds_alternative<FacesShape>(object.shape))
       return usage("Sizing object \"" + object.name + "\": it picks faces, but of no body.",
                    "Name the body: faces are numbered in each.");
-    if (!object.body.empty() && std::none_of(parts.begin(), parts.end(), [&](const Part& part) {
-          return part.name == object.body;
-        })) {
-      std::string known;
-      for (const Part& part : parts) known += (known.empty() ? "\"" : ", \"") + part.name + "\"";
+    if (!object.body.empty() && !known_body(object.body))
       return usage(
           "Sizing object \"" + object.name + "\": there is no body \"" + object.body + "\".",
-          "The bodies are " + known + ".");
-    }
+          body_list());
+  }
+  for (const BoundaryGroup& group : study.groups) {
+    if (group.body.empty() && parts.size() > 1)
+      return usage("Group \"" + group.name + "\": it picks faces, but of no body.",
+                   "Name the body: faces are numbered in each.");
+    if (!group.body.empty() && !known_body(group.body))
+      return usage("Group \"" + group.name + "\": there is no body \"" + group.body + "\".",
+                   body_list());
+  }
+  for (const Part& part : parts) {
+    const std::vector<BoundaryGroup> groups = groups_of(study, part.name);
+    if (groups.empty()) continue;
+    if (Result<GroupedSurface> grouped = group_faces(groups, part.surface); !grouped)
+      return grouped.error();
   }
   for (const Part& part : parts)
     if (Result<SizingField> field = SizingField::make(sizing_of(study, part.name), part.surface);

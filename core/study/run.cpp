@@ -63,13 +63,17 @@ class BodyLoop {
     outcome_.notes = part.notes;
   }
 
+  /// Null when the study has no groups on this body.
+  const FaceGroups* groups() const { return groups_.get(); }
+
   Result<void> begin(const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
                      const Progress& progress) {
     const auto start = Clock::now();
     Result<SizingField> sizing = SizingField::make(sizing_of(study_, part_.name), part_.surface);
     if (!sizing) return sizing.error();
     sizing_ = std::move(*sizing);
-    Result<FirstMesh> first = first_mesh(part_, meshers, progress.portion(0, 0.7, "first mesh"));
+    if (Result<void> divided = divide_faces(); !divided) return divided.error();
+    Result<FirstMesh> first = first_mesh(shape(), meshers, progress.portion(0, 0.7, "first mesh"));
     if (!first) return first.error();
     outcome_.first_mesh_by = first->made_by;
     outcome_.notes.insert(outcome_.notes.end(), first->notes.begin(), first->notes.end());
@@ -104,8 +108,8 @@ class BodyLoop {
       for (std::size_t i = 1; i < asked.size(); ++i)
         asked[i] =
             correction_.apply(current_.mesh.points[i], asked[i], natural_.h_min) * kAskedScale;
-    Result<Adapted<3>> adapted =
-        adapt<3>(current_.mesh, asked, &part_.surface, params, progress.portion(0, 0.8), asked_at);
+    Result<Adapted<3>> adapted = adapt<3>(current_.mesh, asked, &shape().surface, params,
+                                          progress.portion(0, 0.8), asked_at);
     if (!adapted) return give_up(adapted.error());
     if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return give_up(valid.error());
@@ -138,6 +142,20 @@ class BodyLoop {
   }
 
  private:
+  /// The part, its faces divided where the study's groups cover them in part.
+  const Part& shape() const { return grouped_ ? *grouped_ : part_; }
+  Result<void> divide_faces() {
+    const std::vector<BoundaryGroup> groups = groups_of(study_, part_.name);
+    if (groups.empty()) return {};
+    Result<GroupedSurface> grouped = group_faces(groups, part_.surface);
+    if (!grouped) return grouped.error();
+    groups_ = std::make_unique<const FaceGroups>(std::move(grouped->groups));
+    Part part = part_;
+    part.surface = std::move(grouped->surface);
+    grouped_ = std::make_unique<const Part>(std::move(part));
+    return {};
+  }
+
   /// Forecasts the mesh of the end; a detector that needs a mesh forecasts nothing. Errors: memory
   /// when the budget would not do, before anything is spent.
   Result<void> look_ahead(const SimplexMesh<3>& first, const Progress& progress) {
@@ -259,6 +277,8 @@ class BodyLoop {
   NaturalParams natural_;
   std::unique_ptr<ThicknessDetector> detector_;
   SizingField sizing_;
+  std::unique_ptr<const FaceGroups> groups_;
+  std::unique_ptr<const Part> grouped_;
   LayerCorrection correction_;
   MeshForecast forecast_;
   MeshState current_, best_;
@@ -286,8 +306,12 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
   }
   const auto joined = [&](auto&& state_of) {
     std::vector<const MeshState*> states;
-    for (const BodyLoop& body : bodies) states.push_back(&state_of(body));
-    return join(states, names);
+    std::vector<const FaceGroups*> groups;
+    for (const BodyLoop& body : bodies) {
+      states.push_back(&state_of(body));
+      groups.push_back(body.groups());
+    }
+    return join(states, names, groups);
   };
   const auto tell = [&](int iteration, Clock::time_point since) {
     std::vector<const IterationRecord*> records;

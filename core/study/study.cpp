@@ -1,6 +1,7 @@
 #include "core/study/study.h"
 
 #include <algorithm>
+#include <set>
 
 namespace lamella {
 
@@ -18,6 +19,26 @@ std::vector<SizingObject> sizing_of(const Study& study, const std::string& name)
   for (const SizingObject& object : study.sizing)
     if (object.body.empty() || object.body == name) objects.push_back(object);
   return objects;
+}
+
+std::vector<BoundaryGroup> groups_of(const Study& study, const std::string& name) {
+  std::vector<BoundaryGroup> groups;
+  for (const BoundaryGroup& group : study.groups)
+    if (group.body.empty() || group.body == name) groups.push_back(group);
+  return groups;
+}
+
+std::vector<Part> study_parts(std::vector<Part> parts, const std::vector<std::string>& left_out) {
+  std::set<std::string> taken;
+  for (Part& part : parts) {
+    const std::string base = part.name;
+    for (int k = 2; !taken.insert(part.name).second; ++k)
+      part.name = base + " (" + std::to_string(k) + ")";
+  }
+  std::erase_if(parts, [&](const Part& part) {
+    return std::find(left_out.begin(), left_out.end(), part.name) != left_out.end();
+  });
+  return parts;
 }
 
 }  // namespace lamella

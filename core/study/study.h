@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "core/natural/detector.h"
 #include "core/sizing/sizing_object.h"
+#include "core/study/group.h"
 
 namespace lamella {
 
@@ -21,6 +23,7 @@ struct BodySettings {
   std::optional<int> layers2{};  ///< n2 (4.4.3) of sizes up to (1 + alpha + alpha2) h1
   double alpha2 = 0;             ///< see n2: both or none
   std::optional<int> layers3{};  ///< n3 of all sizes beyond; unset: not divided
+  std::optional<std::array<double, 3>> color{};  ///< RGB in [0, 1]; unset: the file's or our own
 
   bool operator==(const BodySettings&) const = default;
 };
@@ -38,18 +41,43 @@ struct StudyOptions {
   std::optional<double> memory{};  ///< MB an adaption may take; unset: no limit
 };
 
+/// A STEP or STL file.
+struct StudyInput {
+  std::string file;  ///< relative to the study's folder, or absolute
+  double unit = 1;   ///< mm per unit of an STL, which names none
+
+  bool operator==(const StudyInput&) const = default;
+};
+
+/// A plane through which the window cuts the model open: what its normal points to is hidden.
+struct CutPlane {
+  std::string name;
+  Vec<3> origin = Vec<3>::Zero();   ///< mm
+  Vec<3> normal = Vec<3>::UnitX();  ///< unit
+  bool on = true;
+};
+
 /// One immutable value: what the user asked. The files are named, never held.
 struct Study {
   std::string name = "untitled";
-  std::vector<std::string> inputs;   ///< STEP or STL files, relative to the study's folder
-  std::vector<BodySettings> bodies;  ///< by part name; a part without an entry gets the defaults
+  std::vector<StudyInput> inputs;
+  std::vector<std::string> left_out;  ///< parts of the inputs, by name, that are not meshed
+  std::vector<BodySettings> bodies;   ///< by part name; a part without an entry gets the defaults
   StudyOptions options;
-  std::vector<SizingObject> sizing;  ///< on top of the natural metric, in this order
+  std::vector<SizingObject> sizing;   ///< on top of the natural metric, in this order
+  std::vector<BoundaryGroup> groups;  ///< named parts of the boundary
+  std::vector<CutPlane> cuts;         ///< for the eye only
 };
 
 /// The settings of the part called `name`: its entry, or the defaults of BodySettings.
 BodySettings settings_of(const Study& study, const std::string& name);
 /// The sizing objects that apply to the part called `name`.
 std::vector<SizingObject> sizing_of(const Study& study, const std::string& name);
+/// The groups on the part called `name`: those that name it, and those that name none.
+std::vector<BoundaryGroup> groups_of(const Study& study, const std::string& name);
+
+/// The parts of all inputs, in order, as a study calls them: names that were taken get a number,
+/// and the parts that are left out go.
+std::vector<Part> study_parts(std::vector<Part> parts, const std::vector<std::string>& left_out);
 
 }  // namespace lamella

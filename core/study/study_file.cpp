@@ -156,6 +156,13 @@ BodySettings read_body(const Json& json, std::size_t index, std::string& complai
   m.number("h_min", body.h_min);
   m.number("h_max", body.h_max);
   m.flag("visible", body.visible);
+  if (m.has("color")) {
+    Vec<3> color = Vec<3>::Zero();
+    m.vector("color", color);
+    if (!(color.minCoeff() >= 0 && color.maxCoeff() <= 1))
+      m.complain("color", "must be three numbers from 0 to 1");
+    body.color = {color[0], color[1], color[2]};
+  }
   m.finish();
   return body;
 }
@@ -293,6 +300,64 @@ SizingObject read_sizing(const Json& json, std::size_t index, std::string& compl
   return object;
 }
 
+StudyInput read_input(const Json& json, std::size_t index, std::string& complaint) {
+  StudyInput input;
+  if (json.is_string()) {
+    input.file = json.get<std::string>();
+    return input;
+  }
+  Members m(json, "inputs[" + std::to_string(index) + "]", complaint);
+  m.text("file", input.file);
+  if (input.file.empty()) m.complain("file", "is needed");
+  m.number("unit", input.unit, false);
+  m.finish();
+  return input;
+}
+
+BoundaryGroup read_group(const Json& json, std::size_t index, std::string& complaint) {
+  const std::string path = "groups[" + std::to_string(index) + "]";
+  BoundaryGroup group;
+  Members m(json, path, complaint);
+  m.text("name", group.name);
+  if (group.name.empty()) m.complain("name", "is needed");
+  if (m.has("kind"))
+    group.kind =
+        static_cast<GroupKind>(m.choice("kind", {"other", "gate", "vent", "symmetry", "walls"}));
+  m.text("body", group.body);
+  m.list("faces", group.faces);
+  m.list("face_names", group.face_names);
+  if (m.has("floods")) {
+    if (!m.at("floods").is_array()) {
+      m.complain("floods", "must be a list");
+    } else {
+      for (const Json& item : m.at("floods")) {
+        Flood flood;
+        Members f(item, path + ".floods[" + std::to_string(group.floods.size()) + "]", complaint);
+        f.vector("point", flood.point, true);
+        f.number("angle", flood.angle, false);
+        f.finish();
+        group.floods.push_back(flood);
+      }
+    }
+  }
+  m.finish();
+  return group;
+}
+
+CutPlane read_cut(const Json& json, std::size_t index, std::string& complaint) {
+  CutPlane cut;
+  cut.name = "cut " + std::to_string(index + 1);
+  Members m(json, "cuts[" + std::to_string(index) + "]", complaint);
+  m.text("name", cut.name);
+  m.vector("origin", cut.origin, true);
+  m.vector("normal", cut.normal, true);
+  if (!(cut.normal.norm() > 0)) m.complain("normal", "must not be zero");
+  cut.normal.normalize();
+  m.flag("on", cut.on);
+  m.finish();
+  return cut;
+}
+
 Json json_of(const Vec<3>& v) { return {v[0], v[1], v[2]}; }
 
 Json json_of(const SizingShape& shape) {
@@ -361,6 +426,18 @@ Json json_of(const SizingObject& object) {
   return json;
 }
 
+Json json_of(const BoundaryGroup& group) {
+  Json json;
+  json["name"] = group.name;
+  json["kind"] = group_kind_name(group.kind);
+  if (!group.body.empty()) json["body"] = group.body;
+  if (!group.faces.empty()) json["faces"] = group.faces;
+  if (!group.face_names.empty()) json["face_names"] = group.face_names;
+  for (const Flood& flood : group.floods)
+    json["floods"].push_back({{"point", json_of(flood.point)}, {"angle", flood.angle}});
+  return json;
+}
+
 }  // namespace
 
 std::string study_to_json(const Study& study) {
@@ -369,7 +446,11 @@ std::string study_to_json(const Study& study) {
   json["program"] = "Lamella " + version();
   json["name"] = study.name;
   json["unit"] = "mm";
-  json["inputs"] = study.inputs;
+  json["inputs"] = Json::array();
+  for (const StudyInput& input : study.inputs)
+    json["inputs"].push_back(input.unit == 1 ? Json(input.file)
+                                             : Json({{"file", input.file}, {"unit", input.unit}}));
+  if (!study.left_out.empty()) json["left_out"] = study.left_out;
   json["bodies"] = Json::array();
   for (const BodySettings& body : study.bodies) {
     Json b;
@@ -382,6 +463,7 @@ std::string study_to_json(const Study& study) {
     if (body.h_min) b["h_min"] = *body.h_min;
     if (body.h_max) b["h_max"] = *body.h_max;
     b["visible"] = body.visible;
+    if (body.color) b["color"] = *body.color;
     json["bodies"].push_back(std::move(b));
   }
   const StudyOptions& o = study.options;
@@ -396,6 +478,12 @@ std::string study_to_json(const Study& study) {
   if (o.memory) options["memory"] = *o.memory;
   options["until_settled"] = o.until_settled;
   for (const SizingObject& object : study.sizing) json["sizing"].push_back(json_of(object));
+  for (const BoundaryGroup& group : study.groups) json["groups"].push_back(json_of(group));
+  for (const CutPlane& cut : study.cuts)
+    json["cuts"].push_back({{"name", cut.name},
+                            {"origin", json_of(cut.origin)},
+                            {"normal", json_of(cut.normal)},
+                            {"on", cut.on}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -420,31 +508,18 @@ Result<Study> study_from_json(const std::string& text, const std::string& where)
   m.text("unit", unit);
   if (unit != "mm") m.complain("unit", "must be \"mm\"");
   m.text("name", study.name);
-  if (m.has("inputs")) {
-    const Json& inputs = m.at("inputs");
-    const bool texts =
-        inputs.is_array() &&
-        std::all_of(inputs.begin(), inputs.end(), [](const Json& i) { return i.is_string(); });
-    if (texts)
-      study.inputs = inputs.get<std::vector<std::string>>();
-    else
-      m.complain("inputs", "must be a list of file names");
-  }
-  if (m.has("bodies")) {
-    if (!m.at("bodies").is_array())
-      m.complain("bodies", "must be a list");
-    else
-      for (const Json& body : m.at("bodies"))
-        study.bodies.push_back(read_body(body, study.bodies.size(), complaint));
-  }
+  const auto each = [&](const char* name, auto& values, auto read) {
+    if (!m.has(name)) return;
+    if (!m.at(name).is_array()) return m.complain(name, "must be a list");
+    for (const Json& item : m.at(name)) values.push_back(read(item, values.size(), complaint));
+  };
+  each("inputs", study.inputs, read_input);
+  m.list("left_out", study.left_out);
+  each("bodies", study.bodies, read_body);
   if (m.has("options")) study.options = read_options(m.at("options"), complaint);
-  if (m.has("sizing")) {
-    if (!m.at("sizing").is_array())
-      m.complain("sizing", "must be a list");
-    else
-      for (const Json& object : m.at("sizing"))
-        study.sizing.push_back(read_sizing(object, study.sizing.size(), complaint));
-  }
+  each("sizing", study.sizing, read_sizing);
+  each("groups", study.groups, read_group);
+  each("cuts", study.cuts, read_cut);
   m.finish();
   if (!complaint.empty()) return refuse(complaint, "Correct or remove it.");
   return study;
@@ -460,11 +535,27 @@ Result<void> write_study(const Study& study, const std::filesystem::path& file) 
   return write_file(file, study_to_json(study));
 }
 
+Result<void> save_study(const Study& study, const std::filesystem::path& file) {
+  const std::string text = study_to_json(study);
+  if (std::error_code ec; std::filesystem::is_regular_file(file, ec)) {
+    Result<std::string> before = read_file(file);
+    if (before && *before != text)
+      if (Result<void> kept = write_file(file.string() + ".bak", *before); !kept) return kept;
+  }
+  if (Result<void> written = write_file(file, text); !written) return written;
+  Result<Study> back = read_study(file);
+  if (!back) return back.error();
+  if (study_to_json(*back) != text)
+    return Error{Code::failed, "\"" + file.string() + "\" does not read back as written.",
+                 "Save it elsewhere, and report this."};
+  return {};
+}
+
 std::vector<std::filesystem::path> input_files(const Study& study,
                                                const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
-  for (const std::string& input : study.inputs) {
-    const std::filesystem::path path(input);
+  for (const StudyInput& input : study.inputs) {
+    const std::filesystem::path path(input.file);
     files.push_back(path.is_absolute() || folder.empty() ? path : folder / path);
   }
   return files;

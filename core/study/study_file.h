@@ -9,7 +9,8 @@
 namespace lamella {
 
 /// A study as plain JSON, schema version 1: name, unit ("mm"), inputs (relative to the study's
-/// folder), bodies, options and sizing, named as the members of Study. What is unset is left out.
+/// folder), bodies, options, sizing, groups and cuts, named as the members of Study. What is unset
+/// is left out.
 std::string study_to_json(const Study& study);
 
 /// Reads what `study_to_json` writes; members left out keep their defaults. `where` names the
@@ -21,6 +22,10 @@ Result<Study> study_from_json(const std::string& text, const std::string& where)
 Result<Study> read_study(const std::filesystem::path& file);
 /// Errors: io; nothing is left behind.
 Result<void> write_study(const Study& study, const std::filesystem::path& file);
+
+/// The same, and what the file held before stays beside it as FILE.bak; the new one is read again
+/// and compared. Errors: io; failed when it reads back otherwise.
+Result<void> save_study(const Study& study, const std::filesystem::path& file);
 
 /// The inputs as paths, those that are relative seen from `folder`.
 std::vector<std::filesystem::path> input_files(const Study& study,

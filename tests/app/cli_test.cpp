@@ -3,9 +3,11 @@
 #include <sys/wait.h>
 
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/io/export_certificate.h"
 #include "core/io/medit.h"
 #include "core/io/msh.h"
 #include "core/mesh/sample_meshes.h"
@@ -277,6 +279,47 @@ TEST_F(Cli, AStudySaysTheSameAsTheCommandLine) {
   const int by_line = run("mesh parts/box.stl -n 2 --iterations 3 --seed 5 -o b.msh");
   EXPECT_EQ(by_study, by_line);
   EXPECT_EQ(read_file(folder / "a.msh").value(), read_file(folder / "b.msh").value());
+}
+
+TEST_F(Cli, GroupsGoIntoEveryFileWithTheirNamesAndAreas) {
+  write("box.stl", box_stl(12, 10, 1));
+  ASSERT_EQ(run("info box.stl --faces --json"), 0) << err;
+  std::string top;
+  for (const json& line : lines())
+    if (line["phase"] == "face" && line["point"][2] > 0.99) top = std::to_string(int(line["id"]));
+  ASSERT_FALSE(top.empty());
+  const std::string asked = "mesh box.stl -n 2 --iterations 1 --group gate=box:" + top +
+                            " --group 'cold side=0,5,0.5~0.3' ";
+  const int status = run(asked + "-o g.msh -o g.vtu -o g.mesh");
+  ASSERT_TRUE(status == 0 || status == 4) << err;
+  const auto areas = [](const SimplexMesh<3>& mesh) {
+    std::map<std::string, double> found;
+    for (const NamedMeasure& group : summarize(mesh).groups) found[group.name] = group.measure;
+    return found;
+  };
+  const Result<MshContent> msh = read_msh(folder / "g.msh");
+  ASSERT_TRUE(msh) << msh.error().message;
+  auto area = areas(msh->mesh);
+  ASSERT_EQ(area.size(), 3u);
+  EXPECT_NEAR(area["gate"], 120, 120e-9);
+  EXPECT_NEAR(area["cold side"], 10, 10e-9);
+  EXPECT_NEAR(area["walls"], 120 + 10 + 2 * 12, 154e-9);
+  // Every file was read back and compared with the mesh; the report has what was found.
+  const json report = json::parse(read_file(folder / "g.report.json").value());
+  ASSERT_EQ(report["exports"].size(), 3u);
+  // Medit has references only: the names are beside it, with what they are to a simulation.
+  const json sidecar = json::parse(read_file(folder / "g.json").value());
+  std::map<std::string, json> groups;
+  for (const json& group : sidecar["groups"]) groups[group["name"]] = group;
+  EXPECT_EQ(groups["gate"]["kind"], "gate");
+  EXPECT_EQ(groups["cold side"]["kind"], "other");
+  EXPECT_FALSE(groups["walls"].contains("kind"));
+
+  EXPECT_EQ(run("mesh box.stl --group gate=lid:1 -o x.msh"), 2);
+  EXPECT_NE(err.find("lid"), std::string::npos) << err;
+  EXPECT_EQ(run("mesh box.stl --group gate=box:99 -o x.msh"), 2);
+  EXPECT_EQ(run("mesh box.stl --group gate -o x.msh"), 2);
+  EXPECT_EQ(run("mesh box.stl --group gate=1,2~0.3 -o x.msh"), 2);
 }
 
 TEST_F(Cli, AGateIsForecastAndRefined) {

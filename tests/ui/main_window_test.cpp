@@ -16,7 +16,7 @@
 #include "tests/support/fake_services.h"
 #include "tests/support/temporary_folder.h"
 #include "ui/actions/actions.h"
-#include "ui/models/body_model.h"
+#include "ui/models/study_model.h"
 #include "ui/panels/banner.h"
 #include "ui/panels/length_box.h"
 #include "ui/session/session.h"
@@ -259,16 +259,17 @@ TEST_F(MainWindowTest, ColoringChangesThePictureAndBringsALegend) {
 
 TEST_F(MainWindowTest, BodySettingsAreEditedAndUndone) {
   open("box.stl");
-  auto* tree = window_.findChild<QTreeView*>("bodies");
-  QAbstractItemModel* model = tree->model();
-  EXPECT_TRUE(model->setData(model->index(0, BodyModel::layers), 8));
+  auto* model = qobject_cast<StudyModel*>(window_.findChild<QTreeView*>("study")->model());
+  const QModelIndex layers = model->index_of({ItemKind::body, 0}, StudyModel::value);
+  EXPECT_TRUE(model->setData(layers, 8));
   EXPECT_EQ(session().body(0).layers, 8);
   EXPECT_EQ(window_.findChild<QSpinBox*>("layers")->value(), 8);
-  EXPECT_TRUE(model->setData(model->index(0, BodyModel::h_min), 0.25));
+  auto* h_min = window_.findChild<LengthBox*>("h_min");
+  h_min->setValue(0.25);
   EXPECT_EQ(session().body(0).h_min, 0.25);
-  EXPECT_TRUE(model->setData(model->index(0, BodyModel::h_min), 0.0));
+  h_min->setValue(0);
   EXPECT_FALSE(session().body(0).h_min.has_value());
-  EXPECT_FALSE(model->setData(model->index(0, BodyModel::layers), 0));
+  EXPECT_FALSE(model->setData(layers, 0));
   action(Act::undo)->trigger();
   EXPECT_EQ(session().body(0).h_min, 0.25);
   action(Act::undo)->trigger();
@@ -287,7 +288,7 @@ TEST_F(MainWindowTest, SettingsOfSeveralBodiesAreEditedAtOnce) {
   ASSERT_EQ(session().parts().size(), 3u);
   auto* layers = window_.findChild<QSpinBox*>("layers");
   session().select({0, 2}, 2);
-  auto* tree = window_.findChild<QTreeView*>("bodies");
+  auto* tree = window_.findChild<QTreeView*>("study");
   EXPECT_EQ(tree->selectionModel()->selectedRows().size(), 2);
   layers->setValue(6);
   EXPECT_EQ(session().body(0).layers, 6);
@@ -304,7 +305,7 @@ TEST_F(MainWindowTest, SettingsOfSeveralBodiesAreEditedAtOnce) {
   action(Act::undo)->trigger();
   EXPECT_FALSE(session().body(1).h_min.has_value());
   EXPECT_FALSE(session().body(2).h_min.has_value());
-  // Rows chosen in the list are chosen everywhere.
+  // Rows chosen in the tree are chosen everywhere.
   tree->selectAll();
   EXPECT_EQ(session().selection(), (std::vector<int>{0, 1, 2}));
 }
@@ -409,8 +410,8 @@ TEST_F(MainWindowTest, HiddenBodyLeavesThePicture) {
   open("box.stl");
   QTest::qWait(50);
   const QImage with = window_.view().picture();
-  auto* tree = window_.findChild<QTreeView*>("bodies");
-  tree->model()->setData(tree->model()->index(0, 0), Qt::Unchecked, Qt::CheckStateRole);
+  auto* model = qobject_cast<StudyModel*>(window_.findChild<QTreeView*>("study")->model());
+  model->setData(model->index_of({ItemKind::body, 0}), Qt::Unchecked, Qt::CheckStateRole);
   QTest::qWait(50);
   EXPECT_GT(difference(with, window_.view().picture()), 0.05);
 }

@@ -1,5 +1,7 @@
 #include "ui/actions/actions.h"
 
+#include <QActionGroup>
+
 #include "ui/theme.h"
 
 namespace lamella::ui {
@@ -17,21 +19,54 @@ struct Row {
 };
 
 constexpr Row table[] = {
-    {Act::open, QT_TR_NOOP("&Open…"), "open", "Ctrl+O", QT_TR_NOOP("Open a STEP or STL file")},
+    {Act::open, QT_TR_NOOP("&Open…"), "open", "Ctrl+O",
+     QT_TR_NOOP("Open a study, a STEP or an STL file")},
     {Act::add, QT_TR_NOOP("&Add body…"), "add", "Ctrl+Shift+O",
      QT_TR_NOOP("Add the bodies of another file")},
-    {Act::remove, QT_TR_NOOP("&Remove body"), "remove", "Del",
-     QT_TR_NOOP("Remove the selected body")},
+    {Act::save, QT_TR_NOOP("&Save study"), "save", "Ctrl+S",
+     QT_TR_NOOP("Save the study, with its mesh beside it")},
+    {Act::save_as, QT_TR_NOOP("Save study &as…"), "", "Ctrl+Shift+S",
+     QT_TR_NOOP("Save the study under another name")},
+    {Act::remove, QT_TR_NOOP("&Remove"), "remove", "Del",
+     QT_TR_NOOP("Remove what is selected in the study")},
     {Act::export_mesh, QT_TR_NOOP("&Export mesh…"), "export", "Ctrl+E",
      QT_TR_NOOP("Write the shown mesh for a solver")},
     {Act::save_picture, QT_TR_NOOP("Save &picture…"), "camera", "Ctrl+P",
-     QT_TR_NOOP("Save the 3D view as a picture")},
+     QT_TR_NOOP("Save the 3D view as a picture of any resolution")},
+    {Act::copy_command, QT_TR_NOOP("&Copy as command line"), "", "Ctrl+Shift+C",
+     QT_TR_NOOP("Copy the lamella-cli command that makes the same mesh")},
+    {Act::preferences, QT_TR_NOOP("P&references"), "", "Ctrl+,",
+     QT_TR_NOOP("Threads, memory, theme")},
     {Act::quit, QT_TR_NOOP("&Quit"), "", "Ctrl+Q", ""},
     {Act::undo, QT_TR_NOOP("&Undo"), "undo", "Ctrl+Z", ""},
     {Act::redo, QT_TR_NOOP("&Redo"), "redo", "Ctrl+Shift+Z", ""},
     {Act::run, QT_TR_NOOP("&Run"), "run", "F5", QT_TR_NOOP("Make the mesh")},
     {Act::cancel, QT_TR_NOOP("&Cancel"), "cancel", "Shift+F5",
      QT_TR_NOOP("Stop and keep the best mesh so far")},
+    {Act::forecast, QT_TR_NOOP("&Forecast"), "forecast", "F6",
+     QT_TR_NOOP("Tell the nodes and the memory to expect, without meshing")},
+    {Act::add_group, QT_TR_NOOP("Add boundary &group"), "group", "G",
+     QT_TR_NOOP("Name a part of the boundary: gate, vent, symmetry")},
+    {Act::add_sphere, QT_TR_NOOP("Add a &sphere with a size of its own"), "sphere", "", ""},
+    {Act::add_box, QT_TR_NOOP("Add a &box with a size of its own"), "box", "", ""},
+    {Act::add_cylinder, QT_TR_NOOP("Add a c&ylinder with a size of its own"), "cylinder", "", ""},
+    {Act::pick_faces, QT_TR_NOOP("&Pick faces of the group"), "pick", "Shift+G",
+     QT_TR_NOOP("Click faces to add them to the selected group, or to take them out"), Check::off},
+    {Act::pick_flood, QT_TR_NOOP("&Flood from a point"), "flood", "",
+     QT_TR_NOOP("Click where the group is to begin: it spreads until the surface turns"),
+     Check::off},
+    {Act::correct_near, QT_TR_NOOP("Correct &near a point"), "sphere", "N",
+     QT_TR_NOOP("Click a place, such as the gate: a sphere with a size of its own is put there"),
+     Check::off},
+    {Act::correct_face, QT_TR_NOOP("Correct on a &face"), "pick", "Shift+N",
+     QT_TR_NOOP("Click a CAD face that is to have a size of its own"), Check::off},
+    {Act::measure, QT_TR_NOOP("&Measure distances"), "measure", "M",
+     QT_TR_NOOP("Click two places to see their distance; a third click begins anew"), Check::off},
+    {Act::ellipsoid, QT_TR_NOOP("Show the metric at a &click"), "ellipsoid", "J",
+     QT_TR_NOOP("Click the mesh to see the element sizes asked there, as an ellipsoid"),
+     Check::off},
+    {Act::box_zoom, QT_TR_NOOP("&Zoom to a box"), "box-zoom", "Z",
+     QT_TR_NOOP("Draw a rectangle to bring it close"), Check::off},
     {Act::section, QT_TR_NOOP("&Section"), "section", "S",
      QT_TR_NOOP("Cut the model open with a plane you can drag"), Check::off},
     {Act::section_x, QT_TR_NOOP("Section across X"), "", "Shift+X", "", Check::off},
@@ -39,6 +74,8 @@ constexpr Row table[] = {
     {Act::section_z, QT_TR_NOOP("Section across Z"), "", "Shift+Z", "", Check::off},
     {Act::flip, QT_TR_NOOP("&Flip section"), "flip", "Shift+F",
      QT_TR_NOOP("Show the other side of the section")},
+    {Act::add_cut, QT_TR_NOOP("&Another section"), "add", "Shift+S",
+     QT_TR_NOOP("Cut with one more plane")},
     {Act::crinkle, QT_TR_NOOP("Cut by &whole elements"), "crinkle", "W",
      QT_TR_NOOP("Leave whole elements at the section instead of cutting through them"), Check::on},
     {Act::edges, QT_TR_NOOP("Mesh &edges"), "edges", "E",
@@ -55,8 +92,12 @@ constexpr Row table[] = {
     {Act::view_right, QT_TR_NOOP("Right"), "", "4", ""},
     {Act::view_top, QT_TR_NOOP("Top"), "", "5", ""},
     {Act::view_bottom, QT_TR_NOOP("Bottom"), "", "6", ""},
-    {Act::show_bodies, QT_TR_NOOP("&Bodies and settings"), "", "Ctrl+1", "", Check::on},
-    {Act::show_results, QT_TR_NOOP("&Convergence, report and log"), "", "Ctrl+2", "", Check::on},
+    {Act::show_study, QT_TR_NOOP("&Study"), "", "Ctrl+1", "", Check::on},
+    {Act::show_properties, QT_TR_NOOP("&Properties"), "", "Ctrl+2", "", Check::on},
+    {Act::show_results, QT_TR_NOOP("&Convergence, report and log"), "", "Ctrl+3", "", Check::on},
+    {Act::search, QT_TR_NOOP("&Search actions…"), "search", "Ctrl+K",
+     QT_TR_NOOP("Find any action by its name")},
+    {Act::shortcuts, QT_TR_NOOP("&Keyboard shortcuts"), "", "F1", ""},
     {Act::about, QT_TR_NOOP("&About Lamella"), "", "", ""},
 };
 static_assert(std::size(table) == static_cast<std::size_t>(Act::count));
@@ -76,6 +117,25 @@ Actions::Actions(QObject* parent) : QObject(parent) {
     action->setChecked(row.check == Check::on);
     actions_[static_cast<std::size_t>(row.act)] = action;
   }
+  auto* modes = new QActionGroup(this);
+  modes->setExclusionPolicy(QActionGroup::ExclusionPolicy::ExclusiveOptional);
+  for (int a = int(Act::pick_faces); a <= int(Act::box_zoom); ++a)
+    modes->addAction((*this)[Act(a)]);
+}
+
+Act Actions::mode() const {
+  for (int a = int(Act::pick_faces); a <= int(Act::box_zoom); ++a)
+    if ((*this)[Act(a)]->isChecked()) return Act(a);
+  return Act::count;
+}
+
+void Actions::leave_mode() {
+  if (mode() != Act::count) (*this)[mode()]->setChecked(false);
+}
+
+void Actions::refresh_icons() {
+  for (const Row& row : table)
+    if (*row.icon) (*this)[row.act]->setIcon(icon(row.icon));
 }
 
 }  // namespace lamella::ui

@@ -10,19 +10,36 @@ namespace lamella::ui {
 enum class Act {
   open,
   add,
+  save,
+  save_as,
   remove,
   export_mesh,
   save_picture,
+  copy_command,
+  preferences,
   quit,
   undo,
   redo,
   run,
   cancel,
+  forecast,
+  add_group,
+  add_sphere,
+  add_box,
+  add_cylinder,
+  pick_faces,  // the modes of the view, up to box_zoom
+  pick_flood,
+  correct_near,
+  correct_face,
+  measure,
+  ellipsoid,
+  box_zoom,
   section,
   section_x,
   section_y,
   section_z,
   flip,
+  add_cut,
   crinkle,
   edges,
   features,
@@ -35,8 +52,11 @@ enum class Act {
   view_right,
   view_top,
   view_bottom,
-  show_bodies,
+  show_study,
+  show_properties,
   show_results,
+  search,
+  shortcuts,
   about,
   count
 };
@@ -48,6 +68,11 @@ class Actions : public QObject {
  public:
   explicit Actions(QObject* parent = nullptr);
   QAction* operator[](Act act) const { return actions_[static_cast<std::size_t>(act)]; }
+  /// The mode of the view that is on; Act::count: none, a click selects.
+  Act mode() const;
+  void leave_mode();
+  /// Draws the icons anew, for another theme.
+  void refresh_icons();
 
  private:
   std::array<QAction*, static_cast<std::size_t>(Act::count)> actions_{};

@@ -1,6 +1,7 @@
 #include "ui/panels/convergence_panel.h"
 
 #include <QCheckBox>
+#include <QFileDialog>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QSlider>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/atomic_file.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 
@@ -68,6 +70,12 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   row->addWidget(position_);
   auto* logarithmic = new QCheckBox(tr("Logarithmic nodes"));
   row->addWidget(logarithmic);
+  auto* table = new QToolButton;
+  table->setIcon(icon("export"));
+  table->setToolTip(tr("Save the figures of all iterations as comma-separated values"));
+  table->setAccessibleName(tr("Save figures"));
+  row->addWidget(table);
+  connect(table, &QToolButton::clicked, this, &ConvergencePanel::save_csv);
   layout->addLayout(row);
 
   connect(logarithmic, &QCheckBox::toggled, nodes_, &Plot::set_logarithmic);
@@ -81,6 +89,34 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   connect(&session, &Session::run_finished, this, &ConvergencePanel::follow_iterations);
   connect(&session, &Session::shown_changed, this, &ConvergencePanel::follow_shown);
   follow_iterations();
+}
+
+QString ConvergencePanel::csv() const {
+  QString text =
+      "iteration,nodes,elements,layers_mean,layers_p5,conformity,quality_min,quality_mean,"
+      "unit_edges,seconds\n";
+  const auto number = [](double x) { return QString::number(x, 'g', 12); };
+  for (const Iteration& it : session_.iterations()) {
+    const IterationRecord& r = it.record;
+    text += QStringList{QString::number(r.iteration), QString::number(r.nodes),
+                        QString::number(r.elements),  number(r.layers.mean),
+                        number(r.layers.p5),          number(r.conformity),
+                        number(r.quality_min),        number(r.quality_mean),
+                        number(r.unit_edges),         number(r.seconds)}
+                .join(',') +
+            '\n';
+  }
+  return text;
+}
+
+void ConvergencePanel::save_csv() {
+  const QString name = QString::fromStdString(session_.study().name) + ".csv";
+  const QString file = QFileDialog::getSaveFileName(this, tr("Save figures"), name,
+                                                    tr("Comma-separated values (*.csv)"));
+  if (file.isEmpty()) return;
+  const Result<void> written = write_file(file.toStdString(), csv().toStdString());
+  Q_EMIT session_.logged(written ? tr("Wrote %1").arg(file)
+                                 : QString::fromStdString(written.error().message));
 }
 
 void ConvergencePanel::follow_iterations() {

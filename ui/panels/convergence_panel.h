@@ -18,8 +18,11 @@ class ConvergencePanel : public QWidget {
 
  public:
   explicit ConvergencePanel(Session& session, QWidget* parent = nullptr);
+  /// Every iteration as a line of comma-separated values, with titles.
+  QString csv() const;
 
  private:
+  void save_csv();
   void follow_iterations();
   void follow_shown();
   /// The layers of the selected body where they are known apart, else of all.

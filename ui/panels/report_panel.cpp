@@ -1,9 +1,15 @@
 #include "ui/panels/report_panel.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "ui/session/session.h"
+#include "ui/theme.h"
 
 namespace lamella::ui {
 namespace {
+
+constexpr std::size_t most_places = 40;
 
 QString cell(const QString& text) {
   return "<td align='right' style='padding: 4px 12px 4px 0'>" + text + "</td>";
@@ -15,6 +21,10 @@ ReportPanel::ReportPanel(Session& session, QWidget* parent)
     : QTextBrowser(parent), session_(session) {
   setFrameShape(QFrame::NoFrame);
   document()->setDocumentMargin(14);
+  setOpenLinks(false);
+  // Columns keep their numbers whole; notes have a width of their own.
+  setLineWrapMode(QTextEdit::NoWrap);
+  connect(this, &QTextBrowser::anchorClicked, this, &ReportPanel::jump);
   connect(&session, &Session::run_finished, this, &ReportPanel::refresh);
   connect(&session, &Session::iterations_changed, this, &ReportPanel::refresh);
   refresh();
@@ -23,15 +33,17 @@ ReportPanel::ReportPanel(Session& session, QWidget* parent)
 void ReportPanel::refresh() {
   const auto& outcome = session_.outcome();
   if (!outcome) {
-    setHtml(tr("<span style='color:#8a97a5'>The report of a finished run appears here.</span>"));
+    setHtml(QString("<span style='color:%1'>%2</span>")
+                .arg(theme::faint_text.name(), tr("The report of a finished run appears here.")));
     return;
   }
   const QString state = outcome->cancelled   ? tr("Cancelled: the best mesh so far")
                         : outcome->converged ? tr("Converged")
                                              : tr("Stopped at the limit of iterations");
-  QString html = QString("<p><b>%1</b> <span style='color:#52606d'>%2</span></p>")
-                     .arg(state, tr("in %1 s").arg(outcome->seconds, 0, 'f', 1));
-  html += "<table cellspacing='0'><tr style='color:#6b7885'>";
+  QString html =
+      QString("<p><b>%1</b> <span style='color:%3'>%2</span></p>")
+          .arg(state, tr("in %1 s").arg(outcome->seconds, 0, 'f', 1), theme::soft_text.name());
+  html += "<table cellspacing='0'><tr style='color:" + theme::soft_text.name() + "'>";
   const QStringList titles{tr("Body"),         tr("Layers asked"),  tr("mean"),
                            tr("5 %"),          tr("median"),        tr("places reached"),
                            tr("Volume, mm³"),  tr("off the CAD's"), tr("Distance to surface"),
@@ -60,9 +72,56 @@ void ReportPanel::refresh() {
   html += "</table>";
   for (const BodyOutcome& body : outcome->bodies)
     for (const std::string& note : body.notes)
-      html += "<p style='color:#52606d'>" +
-              QString::fromStdString(body.name + ": " + note).toHtmlEscaped() + "</p>";
+      html += "<table width='760'><tr><td style='color:" + theme::soft_text.name() + "'>" +
+              QString::fromStdString(body.name + ": " + note).toHtmlEscaped() +
+              "</td></tr></table>";
+  html += places_html();
   setHtml(html);
+}
+
+QString ReportPanel::places_html() const {
+  QString html;
+  const auto& bodies = session_.outcome()->bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto& below = bodies[b].below;
+    if (below.empty()) continue;
+    html += "<p><b>" +
+            tr("%1: places with fewer than %2 layers, the largest first")
+                .arg(QString::fromStdString(bodies[b].name).toHtmlEscaped())
+                .arg(bodies[b].layers_asked) +
+            "</b></p><table cellspacing='0'>";
+    for (std::size_t k = 0; k < below.size() && k < most_places; ++k)
+      html += "<tr>" +
+              cell(QString("<a style='color:%4' href='place:%1:%2'>%3</a>")
+                       .arg(b)
+                       .arg(k)
+                       .arg(tr("Show"), theme::accent.name())) +
+              cell(tr("%1 layers").arg(below[k].layers, 0, 'f', 1)) +
+              cell(tr("on %1 mm²").arg(below[k].area, 0, 'g', 3)) +
+              cell(tr("near (%1, %2, %3)")
+                       .arg(below[k].at[0], 0, 'f', 2)
+                       .arg(below[k].at[1], 0, 'f', 2)
+                       .arg(below[k].at[2], 0, 'f', 2)) +
+              "</tr>";
+    html += "</table>";
+    if (below.size() > most_places)
+      html += "<p>" + tr("and %1 smaller ones").arg(below.size() - most_places) + "</p>";
+  }
+  return html;
+}
+
+void ReportPanel::jump(const QUrl& link) {
+  const QStringList words = link.toString().split(':');
+  const auto& outcome = session_.outcome();
+  if (words.size() != 3 || !outcome) return;
+  const auto b = static_cast<std::size_t>(words[1].toInt());
+  const auto k = static_cast<std::size_t>(words[2].toInt());
+  if (b >= outcome->bodies.size() || k >= outcome->bodies[b].below.size()) return;
+  const PlaceBelow& place = outcome->bodies[b].below[k];
+  // So much around it that its surroundings are recognized.
+  session_.show_place(
+      place.at, 3 * std::sqrt(std::max(place.area, 1e-6)),
+      tr("%1 of %2 layers").arg(place.layers, 0, 'f', 1).arg(outcome->bodies[b].layers_asked));
 }
 
 }  // namespace lamella::ui

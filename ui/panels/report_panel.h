@@ -15,6 +15,9 @@ class ReportPanel : public QTextBrowser {
 
  private:
   void refresh();
+  QString places_html() const;
+  /// Follows a link to a place with too few layers.
+  void jump(const QUrl& link);
 
   Session& session_;
 };

@@ -1,5 +1,6 @@
 #include "ui/panels/welcome.h"
 
+#include <QFileInfo>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -8,6 +9,7 @@
 #include <QVBoxLayout>
 
 #include "ui/actions/actions.h"
+#include "ui/session/recent_files.h"
 #include "ui/theme.h"
 
 namespace lamella::ui {
@@ -78,7 +80,36 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   }
   samples->addStretch(1);
   outer->addLayout(samples);
+  outer->addSpacing(14);
+  recent_ = new QVBoxLayout;
+  recent_->setSpacing(2);
+  outer->addLayout(recent_);
   outer->addStretch(3);
+  refresh();
+}
+
+void Welcome::refresh() {
+  while (QLayoutItem* item = recent_->takeAt(0)) {
+    delete item->widget();
+    delete item;
+  }
+  const QStringList files = recent_files().mid(0, 4);
+  if (files.isEmpty()) return;
+  auto* title = new QLabel(tr("opened last"));
+  title->setObjectName("faint");
+  title->setAlignment(Qt::AlignCenter);
+  recent_->addWidget(title);
+  for (const QString& file : files) {
+    auto* link = new QToolButton;
+    link->setObjectName("link");
+    link->setText(QFileInfo(file).fileName());
+    link->setToolTip(file);
+    link->setCursor(Qt::PointingHandCursor);
+    connect(
+        link, &QToolButton::clicked, this, [this, file] { Q_EMIT file_chosen(file); },
+        Qt::QueuedConnection);
+    recent_->addWidget(link, 0, Qt::AlignCenter);
+  }
 }
 
 void Welcome::set_dragging(bool on) {

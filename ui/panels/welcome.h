@@ -2,6 +2,8 @@
 
 #include <QFrame>
 
+class QVBoxLayout;
+
 namespace lamella::ui {
 
 class Actions;
@@ -14,12 +16,16 @@ class Welcome : public QFrame {
   explicit Welcome(Actions& actions, QWidget* parent = nullptr);
   /// Lights up while files are dragged over the window.
   void set_dragging(bool on);
+  /// Shows the files opened last.
+  void refresh();
 
  Q_SIGNALS:
   void sample_chosen(const QString& name);
+  void file_chosen(const QString& file);
 
  private:
   QFrame* drop_zone_;
+  QVBoxLayout* recent_;
 };
 
 }  // namespace lamella::ui

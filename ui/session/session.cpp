@@ -1,11 +1,12 @@
 #include "ui/session/session.h"
 
+#include <QSettings>
 #include <algorithm>
-#include <set>
 
 #include "core/study/measure.h"
 #include "core/study/study_file.h"
 #include "ui/commands/edit_study.h"
+#include "ui/theme.h"
 
 namespace lamella::ui {
 namespace {
@@ -20,6 +21,12 @@ QString bodies_text(std::size_t count) {
 
 bool is_stl(const std::filesystem::path& file) {
   return text(file.extension().string()).compare(".stl", Qt::CaseInsensitive) == 0;
+}
+
+/// Where a study keeps its mesh.
+std::filesystem::path mesh_beside(const std::filesystem::path& study) {
+  std::filesystem::path file = study;
+  return file += ".vtu";
 }
 
 QString box_size(const ReferenceSurface<3>& surface) {
@@ -37,22 +44,17 @@ QString box_size(const ReferenceSurface<3>& surface) {
       .arg(size[2], 0, 'g', 4);
 }
 
-/// Settings are found by name, so names must differ.
-void make_names_unique(std::vector<Part>& parts) {
-  std::set<std::string> taken;
-  for (Part& part : parts) {
-    const std::string base = part.name;
-    for (int k = 2; !taken.insert(part.name).second; ++k)
-      part.name = base + " (" + std::to_string(k) + ")";
-  }
-}
-
 /// What the mesh depends on, as text.
 std::string asked(Study study) {
   study.name.clear();
   study.inputs.clear();
   study.options.threads = 0;
-  for (BodySettings& body : study.bodies) body.visible = true;
+  study.options.memory.reset();
+  study.cuts.clear();
+  for (BodySettings& body : study.bodies) {
+    body.visible = true;
+    body.color.reset();
+  }
   return study_to_json(study);
 }
 
@@ -60,11 +62,25 @@ std::string asked(Study study) {
 
 Session::Session(Services services, QObject* parent)
     : QObject(parent), services_(std::move(services)) {
+  Study study;
+  study.options.threads = QSettings().value("threads", 0).toInt();
+  if (const double memory = QSettings().value("memory_budget", 0).toDouble(); memory > 0)
+    study.options.memory = memory;
+  study_ = std::make_shared<const Study>(std::move(study));
   connect(&worker_, &Worker::progressed, this, [this](double fraction, const QString& phase) {
     const double elapsed = static_cast<double>(clock_.elapsed()) / 1000;
     const bool known = fraction > 0.02 && elapsed > 1;
     Q_EMIT progressed(fraction, phase, known ? elapsed * (1 - fraction) / fraction : -1);
   });
+}
+
+QColor Session::color_of(int index) const {
+  const auto k = static_cast<std::size_t>(index);
+  if (const auto& own = study_->bodies[k].color)
+    return QColor::fromRgbF(static_cast<float>((*own)[0]), static_cast<float>((*own)[1]),
+                            static_cast<float>((*own)[2]));
+  return body_color(index,
+                    k < parts_->size() ? (*parts_)[k].color : std::array<double, 3>{-1, -1, -1});
 }
 
 bool Session::outdated() const {
@@ -92,9 +108,30 @@ void Session::select(std::vector<int> parts, int current) {
   std::erase_if(parts, [&](int p) { return p < 0 || p >= static_cast<int>(parts_->size()); });
   if (std::find(parts.begin(), parts.end(), current) == parts.end())
     current = parts.empty() ? -1 : parts.back();
-  if (parts == selection_ && current == selected_) return;
+  if (parts == selection_ && current == selected_ && !item_) return;
+  item_.reset();
   selection_ = std::move(parts);
   selected_ = current;
+  Q_EMIT selection_changed();
+}
+
+Item Session::item() const {
+  const Item item = item_.value_or(Item{ItemKind::body, selected_});
+  const auto within = [&](std::size_t count) {
+    return item.index >= 0 && item.index < static_cast<int>(count);
+  };
+  // An edit undone may have taken the entry away.
+  const bool there = item.kind == ItemKind::body     ? true
+                     : item.kind == ItemKind::group  ? within(study_->groups.size())
+                     : item.kind == ItemKind::sizing ? within(study_->sizing.size())
+                                                     : within(study_->cuts.size());
+  return there ? item : Item{ItemKind::body, selected_};
+}
+
+void Session::select_item(const Item& item) {
+  if (item.kind == ItemKind::body) return select(item.index);
+  if (item_ == item) return;
+  item_ = item;
   Q_EMIT selection_changed();
 }
 
@@ -137,39 +174,139 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
   params.chord_tolerance = study_->options.chord_tolerance;
   params.angle_tolerance = study_->options.angle_tolerance;
   if (add && !parts_->empty()) params = read_with_;
-  params.unit = unit;
-  begin(Activity::loading, [this, files, add, params](const Progress& progress) -> Worker::Done {
-    std::vector<Part> parts;
-    std::vector<std::string> inputs;
-    std::vector<PartSource> sources;
-    std::optional<Error> error;
-    QString no_unit;
-    for (std::size_t k = 0; k < files.size() && !error; ++k) {
-      const double share = 1.0 / static_cast<double>(files.size());
-      auto loaded = services_.load_parts(
-          files[k], params,
-          progress.portion(share * static_cast<double>(k), share * static_cast<double>(k + 1)));
-      if (!loaded) {
-        error = loaded.error();
-        break;
+  begin(Activity::loading,
+        [this, files, add, params, unit](const Progress& progress) -> Worker::Done {
+          std::vector<StudyInput> inputs;
+          std::vector<double> units;
+          QString no_unit;
+          for (const auto& file : files) {
+            if (is_stl(file)) no_unit = text(file.string());
+            units.push_back(is_stl(file) ? unit : 1);
+            inputs.push_back({file.string(), units.back()});
+          }
+          Result<ReadParts> read = read_parts(services_, files, units, params, progress);
+          return [this, read = std::move(read), inputs, add, no_unit, params, unit]() mutable {
+            set_activity(Activity::idle);
+            if (!read) return report(read.error());
+            const QString size =
+                read->parts.empty() ? QString() : box_size(read->parts.back().surface);
+            if (!add) read_with_ = params;
+            take_parts(std::move(*read), inputs, add);
+            if (!no_unit.isEmpty() && unit == 1) Q_EMIT unit_assumed(no_unit, size);
+          };
+        });
+}
+
+void Session::open_study(const std::filesystem::path& file,
+                         const std::optional<std::filesystem::path>& recovered_for) {
+  if (activity_ != Activity::idle) return;
+  Q_EMIT logged(tr("Opening the study %1").arg(file_name(file)));
+  begin(Activity::loading, [this, file, recovered_for](const Progress& progress) -> Worker::Done {
+    struct Opened {
+      Study study;
+      ReadParts read;
+      LoadParams params;
+      std::shared_ptr<MeshState> mesh;
+    };
+    const auto open_all = [&]() -> Result<Opened> {
+      Result<Study> study = read_study(file);
+      if (!study) return study.error();
+      Opened opened;
+      opened.study = std::move(*study);
+      std::vector<double> units;
+      for (const StudyInput& input : opened.study.inputs) units.push_back(input.unit);
+      opened.params.chord_tolerance = opened.study.options.chord_tolerance;
+      opened.params.angle_tolerance = opened.study.options.angle_tolerance;
+      const auto files = input_files(opened.study, file.parent_path());
+      Result<ReadParts> read = read_parts(services_, files, units, opened.params, progress);
+      if (!read) return read.error();
+      opened.read = std::move(*read);
+      // From here on inputs are known by where they are.
+      for (std::size_t k = 0; k < files.size(); ++k)
+        opened.study.inputs[k].file =
+            std::filesystem::absolute(files[k]).lexically_normal().string();
+      std::error_code ec;
+      const std::filesystem::path mesh = mesh_beside(recovered_for.value_or(file));
+      if (!recovered_for && std::filesystem::is_regular_file(mesh, ec))
+        if (Result<MeshState> state = services_.read_mesh(mesh))
+          opened.mesh = std::make_shared<MeshState>(std::move(*state));
+      return opened;
+    };
+    Result<Opened> opened = open_all();
+    return [this, opened = std::move(opened), file, recovered_for]() mutable {
+      set_activity(Activity::idle);
+      if (!opened) return report(opened.error());
+      read_with_ = opened->params;
+      name_parts(opened->read, 0, opened->study.left_out, true);
+      replace_all(std::move(opened->study), std::move(opened->read), 0);
+      file_ = recovered_for.value_or(file);
+      if (recovered_for) {
+        saved_.clear();
+        compared_.reset();
       }
-      if (is_stl(files[k])) no_unit = text(files[k].string());
-      for (std::size_t p = 0; p < loaded->size(); ++p) {
-        parts.push_back(std::move((*loaded)[p]));
-        sources.push_back({files[k], p, params.unit});
+      if (opened->mesh) {
+        run_study_ = study_;
+        Iteration iteration;
+        iteration.record.nodes = opened->mesh->mesh.node_count();
+        iteration.record.elements = opened->mesh->mesh.element_count();
+        iteration.state = opened->mesh;
+        add_iteration(std::move(iteration));
       }
-      inputs.push_back(files[k].string());
-    }
-    return
-        [this, parts = std::move(parts), sources, inputs, error, add, no_unit, params]() mutable {
-          set_activity(Activity::idle);
-          if (error) return report(*error);
-          const QString size = parts.empty() ? QString() : box_size(parts.back().surface);
-          if (!add) read_with_ = params;
-          take_parts(std::move(parts), std::move(sources), inputs, add);
-          if (!no_unit.isEmpty() && params.unit == 1) Q_EMIT unit_assumed(no_unit, size);
-        };
+      Q_EMIT study_changed();
+    };
   });
+}
+
+Study Session::study_for(const std::filesystem::path& folder) const {
+  Study study = *study_;
+  for (StudyInput& input : study.inputs) {
+    const std::filesystem::path absolute = std::filesystem::absolute(input.file).lexically_normal();
+    const std::filesystem::path relative =
+        folder.empty() ? std::filesystem::path() : absolute.lexically_relative(folder);
+    // A file far away is better named where it is: the study may be moved without it.
+    const bool near = !relative.empty() && *relative.begin() != "..";
+    input.file = near ? relative.string() : absolute.string();
+  }
+  return study;
+}
+
+void Session::save(const std::filesystem::path& file) {
+  if (activity_ != Activity::idle || empty()) return;
+  const Study study = study_for(std::filesystem::absolute(file).parent_path());
+  if (const Result<void> written = save_study(study, file); !written)
+    return report(written.error());
+  file_ = file;
+  saved_ = study_to_json(*study_);
+  compared_.reset();
+  Q_EMIT logged(tr("Saved %1").arg(text(file.string())));
+  Q_EMIT study_changed();
+  const auto state = outdated() ? nullptr : shown_state();
+  const std::filesystem::path mesh = mesh_beside(file);
+  if (!state || parts_->empty()) {
+    // A mesh of other settings must not be taken for this study's.
+    std::error_code ec;
+    std::filesystem::remove(mesh, ec);
+    Q_EMIT saved(text(file.string()));
+    return;
+  }
+  begin(Activity::exporting,
+        [this, state, file, mesh, study = study_](const Progress&) -> Worker::Done {
+          Result<void> written = services_.export_mesh(mesh, *state, *study);
+          return [this, written = std::move(written), file] {
+            set_activity(Activity::idle);
+            if (!written) return report(written.error());
+            Q_EMIT saved(text(file.string()));
+          };
+        });
+}
+
+bool Session::modified() const {
+  if (parts_->empty()) return false;
+  if (compared_ != study_) {
+    compared_ = study_;
+    differs_ = study_to_json(*study_) != saved_;
+  }
+  return differs_;
 }
 
 void Session::open_sample(const std::string& name) {
@@ -193,10 +330,9 @@ void Session::open_mesh(const std::filesystem::path& file) {
     return [this, read = std::move(read), file]() mutable {
       set_activity(Activity::idle);
       if (!read) return report(read.error());
-      take_parts({}, {}, {}, false);
       Study study;
       study.name = file.stem().string();
-      set_study(std::make_shared<Study>(study));
+      replace_all(std::move(study), {}, 0);
       auto state = std::make_shared<MeshState>(std::move(*read));
       Iteration iteration;
       iteration.record.nodes = state->mesh.node_count();
@@ -207,32 +343,42 @@ void Session::open_mesh(const std::filesystem::path& file) {
   });
 }
 
-void Session::take_parts(std::vector<Part> parts, std::vector<PartSource> sources,
-                         std::vector<std::string> inputs, bool add) {
-  std::vector<Part> all;
+void Session::take_parts(ReadParts read, const std::vector<StudyInput>& inputs, bool add) {
+  ReadParts all;
   Study study;
   if (add) {
-    all = *parts_;
+    all.parts = *parts_;
+    all.sources = sources_;
     study = *study_;
   } else {
     study.options = study_->options;
-    study.name = !inputs.empty() ? std::filesystem::path(inputs.front()).stem().string()
-                                 : (parts.empty() ? "untitled" : parts.front().name);
+    study.name = !inputs.empty() ? std::filesystem::path(inputs.front().file).stem().string()
+                                 : (read.parts.empty() ? "untitled" : read.parts.front().name);
   }
-  const std::size_t first_new = all.size();
-  if (!add) sources_.clear();
-  sources_.insert(sources_.end(), sources.begin(), sources.end());
-  for (Part& part : parts) all.push_back(std::move(part));
-  make_names_unique(all);
+  const std::size_t first_new = all.parts.size();
+  for (Part& part : read.parts) all.parts.push_back(std::move(part));
+  all.sources.insert(all.sources.end(), read.sources.begin(), read.sources.end());
+  name_parts(all, first_new, study.left_out, false);
   study.inputs.insert(study.inputs.end(), inputs.begin(), inputs.end());
+  const std::filesystem::path file = add ? file_ : std::filesystem::path();
+  const std::string saved = saved_;
+  replace_all(std::move(study), std::move(all), first_new);
+  file_ = file;
+  if (add) {
+    saved_ = saved;
+    compared_.reset();
+  }
+}
+
+void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
   std::vector<BodySettings> bodies;
-  for (const Part& part : all) {
+  for (const Part& part : read.parts) {
     bodies.push_back(settings_of(study, part.name));
     bodies.back().name = part.name;
   }
   study.bodies = std::move(bodies);
-  for (std::size_t k = first_new; k < all.size(); ++k) {
-    const Part& part = all[k];
+  for (std::size_t k = first_new; k < read.parts.size(); ++k) {
+    const Part& part = read.parts[k];
     Q_EMIT logged(tr("%1: %2, %3 triangles on %4 faces, volume %L5 mm³")
                       .arg(text(part.name), box_size(part.surface))
                       .arg(part.surface.facets.size())
@@ -240,11 +386,16 @@ void Session::take_parts(std::vector<Part> parts, std::vector<PartSource> source
                       .arg(part.cad_volume, 0, 'f', 1));
     for (const std::string& note : part.notes) Q_EMIT logged(text(part.name + ": " + note));
   }
-  const bool any = !all.empty();
-  parts_ = std::make_shared<const std::vector<Part>>(std::move(all));
+  const bool any = !read.parts.empty();
+  parts_ = std::make_shared<const std::vector<Part>>(std::move(read.parts));
+  sources_ = std::move(read.sources);
   selected_ = -1;
   selection_.clear();
+  item_.reset();
+  file_.clear();
   undo_.clear();
+  saved_ = study_to_json(study);
+  compared_.reset();
   clear_iterations();
   set_study(std::make_shared<Study>(std::move(study)));
   Q_EMIT parts_changed();
@@ -253,21 +404,42 @@ void Session::take_parts(std::vector<Part> parts, std::vector<PartSource> source
 
 void Session::remove_part(int index) {
   if (activity_ != Activity::idle || index < 0 || index >= static_cast<int>(parts_->size())) return;
-  auto parts = *parts_;
-  auto study = *study_;
-  Q_EMIT logged(tr("Removed %1").arg(text(parts[index].name)));
-  parts.erase(parts.begin() + index);
-  study.bodies.erase(study.bodies.begin() + index);
-  if (parts.empty()) study = Study{};
-  sources_.erase(sources_.begin() + index);
-  parts_ = std::make_shared<const std::vector<Part>>(std::move(parts));
-  selected_ = -1;
-  selection_.clear();
-  undo_.clear();
-  clear_iterations();
-  set_study(std::make_shared<Study>(std::move(study)));
-  Q_EMIT parts_changed();
-  select(std::min(index, static_cast<int>(parts_->size()) - 1));
+  ReadParts rest{*parts_, sources_};
+  Study study = *study_;
+  const std::string name = rest.parts[static_cast<std::size_t>(index)].name;
+  Q_EMIT logged(tr("Removed %1").arg(text(name)));
+  rest.parts.erase(rest.parts.begin() + index);
+  rest.sources.erase(rest.sources.begin() + index);
+  study.left_out.push_back(name);
+  std::erase_if(study.groups, [&](const BoundaryGroup& group) { return group.body == name; });
+  std::erase_if(study.sizing, [&](const SizingObject& object) { return object.body == name; });
+  if (rest.parts.empty()) study = Study{};
+  const std::filesystem::path file = rest.parts.empty() ? std::filesystem::path() : file_;
+  const std::string saved = saved_;
+  const std::size_t all = rest.parts.size();
+  replace_all(std::move(study), std::move(rest), all);
+  file_ = file;
+  saved_ = saved;
+  compared_.reset();
+  select(std::min(index, static_cast<int>(all) - 1));
+}
+
+void Session::remove_item(const Item& item) {
+  if (item.kind == ItemKind::body) return remove_part(item.index);
+  Study study = *study_;
+  const auto take = [&](auto& list, const QString& what) {
+    if (item.index < 0 || item.index >= static_cast<int>(list.size())) return;
+    const QString name = text(list[static_cast<std::size_t>(item.index)].name);
+    list.erase(list.begin() + item.index);
+    edit(what.arg(name), std::move(study));
+  };
+  if (item.kind == ItemKind::group) take(study.groups, tr("Remove group %1"));
+  if (item.kind == ItemKind::sizing) take(study.sizing, tr("Remove size %1"));
+  if (item.kind == ItemKind::cut) take(study.cuts, tr("Remove %1"));
+}
+
+void Session::show_place(const Vec<3>& at, double radius, const QString& words) {
+  Q_EMIT place_shown(at, radius, words);
 }
 
 void Session::clear_iterations() {
@@ -303,10 +475,11 @@ void Session::run() {
       [this, study = study_, parts = parts_, sources = sources_, params,
        again](const Progress& whole) mutable -> Worker::Done {
         if (again) {
-          auto read = read_again(*parts, sources, params, whole.portion(0, 0.05, "reading"));
+          auto read =
+              read_again(services_, *parts, sources, params, whole.portion(0, 0.05, "reading"));
           if (!read)
             return [this, error = read.error()]() mutable { finish_run(std::move(error)); };
-          parts = *read;
+          parts = std::make_shared<const std::vector<Part>>(std::move(*read));
           worker_.post([this, parts, params] {
             parts_ = parts;
             read_with_ = params;
@@ -332,34 +505,6 @@ void Session::run() {
             });
         return [this, result = std::move(result)]() mutable { finish_run(std::move(result)); };
       });
-}
-
-Result<std::shared_ptr<const std::vector<Part>>> Session::read_again(
-    const std::vector<Part>& parts, const std::vector<PartSource>& sources,
-    const LoadParams& params, const Progress& progress) {
-  std::vector<Part> all = parts;
-  std::vector<Part> file;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (k == 0 || sources[k].file != sources[k - 1].file ||
-        sources[k].unit != sources[k - 1].unit) {
-      LoadParams own = params;
-      own.unit = sources[k].unit;
-      const auto count = static_cast<double>(all.size());
-      auto loaded = services_.load_parts(
-          sources[k].file, own,
-          progress.portion(static_cast<double>(k) / count, static_cast<double>(k + 1) / count));
-      if (!loaded) return loaded.error();
-      file = std::move(*loaded);
-    }
-    if (sources[k].index >= file.size())
-      return Error{Code::bad_input,
-                   "\"" + sources[k].file.string() + "\" has changed since it was opened.",
-                   "Open it again."};
-    Part part = file[sources[k].index];
-    part.name = all[k].name;
-    all[k] = std::move(part);
-  }
-  return std::make_shared<const std::vector<Part>>(std::move(all));
 }
 
 void Session::finish_run(Result<Outcome> result) {
@@ -431,8 +576,8 @@ void Session::export_mesh(const std::filesystem::path& file) {
   });
 }
 
-void Session::edit(const QString& what, Study after) {
-  undo_.push(new EditStudy(*this, what, std::make_shared<Study>(std::move(after))));
+void Session::edit(const QString& what, Study after, int merge) {
+  undo_.push(new EditStudy(*this, what, std::make_shared<Study>(std::move(after)), merge));
 }
 
 void Session::edit_selection(const QString& what,

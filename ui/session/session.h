@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QColor>
 #include <QElapsedTimer>
 #include <QObject>
 #include <QUndoStack>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "ui/services.h"
+#include "ui/session/item.h"
+#include "ui/session/read_parts.h"
 #include "ui/session/worker.h"
 
 namespace lamella::ui {
@@ -21,13 +24,6 @@ enum class Activity { idle, loading, running, exporting };
 struct Iteration {
   IterationRecord record;
   std::shared_ptr<const MeshState> state;
-};
-
-/// Where a part came from, so that it can be read again with another tolerance.
-struct PartSource {
-  std::filesystem::path file;
-  std::size_t index = 0;  ///< among the bodies of its file
-  double unit = 1;        ///< mm per unit of the file
 };
 
 /// The open study and everything that happens to it; the panels and views only follow it.
@@ -44,8 +40,11 @@ class Session : public QObject {
   const Study& study() const { return *study_; }
   std::shared_ptr<const Study> study_value() const { return study_; }
   const std::vector<Part>& parts() const { return *parts_; }
+  std::shared_ptr<const std::vector<Part>> parts_value() const { return parts_; }
   /// Settings of part `index`; every part has an entry in the study.
   const BodySettings& body(int index) const { return study_->bodies[index]; }
+  /// In the view: what the user chose, else the file's color, else one of ours.
+  QColor color_of(int index) const;
   const std::vector<Iteration>& iterations() const { return iterations_; }
   const std::optional<Outcome>& outcome() const { return outcome_; }
   Activity activity() const { return activity_; }
@@ -69,6 +68,9 @@ class Session : public QObject {
   void select(int part);
   /// Selects several; `current` is one of them, or -1 with none.
   void select(std::vector<int> parts, int current);
+  /// What was selected last: the body `selected`, or an entry of another list of the study.
+  Item item() const;
+  void select_item(const Item& item);
 
   /// Chord tolerance a part gets when the study has none, mm; its smallest size likewise.
   double automatic_size(int part) const;
@@ -82,14 +84,34 @@ class Session : public QObject {
   /// Removes one body from the study.
   void remove_part(int index);
 
+  /// The file of the study; empty while it has none.
+  const std::filesystem::path& file() const { return file_; }
+  /// Whether the study differs from what was opened or saved last.
+  bool modified() const;
+  /// Opens a study and its parts. One that was `recovered` keeps the file it was made for, which
+  /// may be none, and counts as modified.
+  void open_study(const std::filesystem::path& file,
+                  const std::optional<std::filesystem::path>& recovered_for = {});
+  /// Writes the study, with the mesh shown beside it (FILE.vtu) if there is one, and reports.
+  void save(const std::filesystem::path& file);
+  /// The study as text with inputs that are found from `folder`.
+  Study study_for(const std::filesystem::path& folder) const;
+
   void run();
   /// Cancels what is under way.
   void cancel();
   /// Writes the shown mesh.
   void export_mesh(const std::filesystem::path& file);
 
-  /// Changes the study as one undoable step called `what`.
-  void edit(const QString& what, Study after);
+  /// Changes the study as one undoable step called `what`. Steps one after another with the same
+  /// `merge` (not 0) become one.
+  void edit(const QString& what, Study after, int merge = 0);
+  /// A number for `edit` that no step has had yet.
+  int new_merge() { return ++merges_; }
+  /// Takes an entry out of the study; a body as `remove_part` does.
+  void remove_item(const Item& item);
+  /// Asks the view to bring a place close and mark it.
+  void show_place(const Vec<3>& at, double radius, const QString& text);
   void edit_body(int index, const QString& what, const BodySettings& after);
   /// Changes the settings of every selected body in one undoable step.
   void edit_selection(const QString& what, const std::function<void(BodySettings&)>& change);
@@ -108,6 +130,8 @@ class Session : public QObject {
   void progressed(double fraction, const QString& phase, double seconds_left);
   void run_finished();
   void exported(const QString& file);
+  void saved(const QString& file);
+  void place_shown(const lamella::Vec<3>& at, double radius, const QString& text);
   void failed(const QString& message, const QString& hint);
   /// An STL was read without a unit; its size may need another one.
   void unit_assumed(const QString& file, const QString& size);
@@ -119,12 +143,9 @@ class Session : public QObject {
   void set_activity(Activity activity);
   void begin(Activity activity, Worker::Job job);
   void report(const Error& error);
-  void take_parts(std::vector<Part> parts, std::vector<PartSource> sources,
-                  std::vector<std::string> inputs, bool add);
-  /// The parts with surfaces of the study's tolerances; for use by the running job.
-  Result<std::shared_ptr<const std::vector<Part>>> read_again(
-      const std::vector<Part>& parts, const std::vector<PartSource>& sources,
-      const LoadParams& params, const Progress& progress);
+  void take_parts(ReadParts read, const std::vector<StudyInput>& inputs, bool add);
+  /// Puts the study and its named parts in the place of what there was.
+  void replace_all(Study study, ReadParts read, std::size_t first_new);
   void clear_iterations();
   void add_iteration(Iteration iteration);
   void finish_run(Result<Outcome> result);
@@ -143,6 +164,12 @@ class Session : public QObject {
   int shown_ = -1;
   int selected_ = -1;
   std::vector<int> selection_;
+  std::optional<Item> item_;  // unless it is a body
+  std::filesystem::path file_;
+  std::string saved_;                              // the study as it was opened or saved
+  mutable std::shared_ptr<const Study> compared_;  // by `modified`, with what it found
+  mutable bool differs_ = false;
+  int merges_ = 0;
   QUndoStack undo_;
   QElapsedTimer clock_;
   Worker worker_;  // last: its destructor waits for the job that uses the rest

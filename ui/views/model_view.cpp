@@ -3,64 +3,38 @@
 #include <vtkCamera.h>
 #include <vtkRenderer.h>
 
-#include <QComboBox>
-#include <QDoubleSpinBox>
-#include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QMenu>
 #include <QMouseEvent>
-#include <QSlider>
 #include <QTimer>
-#include <QToolButton>
 #include <cmath>
 
+#include "core/study/study_file.h"
 #include "ui/actions/actions.h"
+#include "ui/commands/study_edits.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 #include "ui/views/overlay.h"
+#include "ui/views/pick_tools.h"
+#include "ui/views/size_shapes.h"
+#include "ui/views/size_tool.h"
+#include "ui/views/view_bar.h"
 #include "ui/views/vtk_view.h"
 
 namespace lamella::ui {
-namespace {
-
-constexpr int slider_steps = 1000;
-
-QToolButton* button(QAction* action) {
-  auto* b = new QToolButton;
-  b->setDefaultAction(action);
-  b->setIconSize(QSize(20, 20));
-  b->setAutoRaise(true);
-  return b;
-}
-
-QFrame* separator() {
-  auto* line = new QFrame;
-  line->setFixedSize(1, 20);
-  line->setStyleSheet("background: #dde2e8; border: none;");
-  return line;
-}
-
-/// Smallest and largest distance of the box's corners along the normal.
-std::pair<double, double> range_along(const std::array<double, 6>& box, const Vec<3>& normal) {
-  double low = 0;
-  double high = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double a = normal[axis] * box[2 * axis];
-    const double b = normal[axis] * box[2 * axis + 1];
-    low += std::min(a, b);
-    high += std::max(a, b);
-  }
-  return {low, high};
-}
-
-}  // namespace
 
 ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
     : QWidget(parent), session_(session), actions_(actions) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(0);
-  layout->addWidget(make_bar());
+  bar_ = new ViewBar(actions);
+  layout->addWidget(bar_);
+  connect(bar_, &ViewBar::color_changed, this, &ModelView::follow_study);
+  connect(bar_, &ViewBar::slide_started, this, [this] { drag_merge_ = session_.new_merge(); });
+  connect(bar_, &ViewBar::slid, this, [this](double at) { slide_to(at, drag_merge_); });
+  connect(bar_, &ViewBar::moved, this, [this](double at) { slide_to(at, 0); });
   auto* frame = new QFrame;
   frame->setObjectName("view_frame");
   auto* inner = new QVBoxLayout(frame);
@@ -69,11 +43,25 @@ ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
   if (VtkView::supported()) {
     view_ = new VtkView;
     scene_ = std::make_unique<Scene>(*view_->renderer());
+    shapes_ = std::make_unique<SizeShapes>(*view_->renderer());
+    picks_ = std::make_unique<PickTools>(session_, actions_, *view_, *scene_);
     tool_ = std::make_unique<SectionTool>(*view_, [this](const Section& moved) {
-      section_ = moved;
-      apply_section();
+      const auto now = section();
+      if (now && moved.origin == now->origin && moved.normal == now->normal)
+        overlay_->update();  // only another look of the handle
+      else
+        set_section(moved, drag_merge_);
     });
-    overlay_ = new Overlay(*view_, *tool_);
+    size_tool_ = std::make_unique<SizeTool>(*view_, [this](const SizingShape& shape, int drag) {
+      if (size_merge_.first != drag) size_merge_ = {drag, session_.new_merge()};
+      edit_sizing(
+          session_, session_.item().index, tr("Move %1"),
+          [&](SizingObject& object) { object.shape = shape; }, size_merge_.second);
+    });
+    overlay_ = new Overlay(*view_);
+    overlay_->add([this](QPainter& p) { tool_->paint(p); }, true);
+    overlay_->add([this](QPainter& p) { size_tool_->paint(p); }, true);
+    overlay_->add([this](QPainter& p) { picks_->paint(p); }, false);
     view_->set_mouse_filter([this](QMouseEvent* event) { return mouse(event); });
     connect(view_, &VtkView::rendered, this, [this] {
       if (scene_->set_pixel_size(view_->pixel_size())) view_->update();
@@ -97,105 +85,19 @@ ModelView::~ModelView() {
   if (view_) view_->set_mouse_filter({});
 }
 
-QWidget* ModelView::make_bar() {
-  auto* bar = new QFrame;
-  bar->setObjectName("view_bar");
-  auto* row = new QHBoxLayout(bar);
-  row->setContentsMargins(10, 5, 10, 5);
-  row->setSpacing(6);
-  auto* by = new QLabel(tr("Color by"));
-  by->setObjectName("soft");
-  row->addWidget(by);
-  colors_ = new QComboBox;
-  colors_->setObjectName("color_by");
-  colors_->addItem(tr("Body"), int(ColorBy::body));
-  colors_->addItem(tr("Quality c(T)"), int(ColorBy::quality));
-  colors_->addItem(tr("Wall thickness"), int(ColorBy::thickness));
-  colors_->addItem(tr("Layers measured"), int(ColorBy::layers));
-  colors_->setMinimumWidth(140);
-  row->addWidget(colors_);
-  row->addWidget(button(actions_[Act::edges]));
-  row->addWidget(button(actions_[Act::features]));
-  row->addWidget(separator());
-  auto* section = button(actions_[Act::section]);
-  section->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  row->addWidget(section);
-
-  section_bar_ = new QWidget;
-  auto* tools = new QHBoxLayout(section_bar_);
-  tools->setContentsMargins(0, 0, 0, 0);
-  tools->setSpacing(3);
-  const std::pair<Act, const char*> axes[] = {
-      {Act::section_x, "X"}, {Act::section_y, "Y"}, {Act::section_z, "Z"}};
-  for (const auto& [act, letter] : axes) {
-    auto* b = button(actions_[act]);
-    b->setToolButtonStyle(Qt::ToolButtonTextOnly);
-    actions_[act]->setIconText(letter);
-    b->setMinimumWidth(26);
-    tools->addWidget(b);
-  }
-  slider_ = new QSlider(Qt::Horizontal);
-  slider_->setObjectName("section_position");
-  slider_->setRange(0, slider_steps);
-  slider_->setMinimumWidth(90);
-  slider_->setMaximumWidth(180);
-  tools->addSpacing(4);
-  tools->addWidget(slider_, 1);
-  tools->addSpacing(4);
-  position_ = new QDoubleSpinBox;
-  position_->setDecimals(2);
-  position_->setSuffix(tr(" mm"));
-  position_->setRange(-1e6, 1e6);
-  position_->setKeyboardTracking(false);
-  position_->setMinimumWidth(100);
-  tools->addWidget(position_);
-  tools->addWidget(button(actions_[Act::flip]));
-  tools->addWidget(button(actions_[Act::crinkle]));
-  row->addWidget(section_bar_, 1);
-  section_bar_->hide();
-  row->addStretch(1);
-
-  auto* views = new QToolButton;
-  views->setIcon(actions_[Act::view_iso]->icon());
-  views->setIconSize(QSize(20, 20));
-  views->setAutoRaise(true);
-  views->setToolTip(tr("Standard views (keys 0 to 6)"));
-  views->setPopupMode(QToolButton::InstantPopup);
-  auto* menu = new QMenu(views);
-  for (int a = int(Act::view_iso); a <= int(Act::view_bottom); ++a)
-    menu->addAction(actions_[Act(a)]);
-  views->setMenu(menu);
-  row->addWidget(views);
-  row->addWidget(button(actions_[Act::fit]));
-  row->addWidget(button(actions_[Act::perspective]));
-  row->addWidget(button(actions_[Act::save_picture]));
-
-  connect(colors_, &QComboBox::currentIndexChanged, this, [this] {
-    if (!scene_) return;
-    follow_study();
-    refresh();
-  });
-  connect(slider_, &QSlider::valueChanged, this, [this](int value) {
-    if (!section_ || !scene_) return;
-    const auto [low, high] = range_along(scene_->bounds(), section_->normal);
-    const double want = low + (high - low) * value / slider_steps;
-    section_->origin += section_->normal * (want - section_->origin.dot(section_->normal));
-    apply_section();
-  });
-  connect(position_, &QDoubleSpinBox::valueChanged, this, [this](double value) {
-    if (!section_) return;
-    section_->origin += section_->normal * (value - section_->origin.dot(section_->normal));
-    apply_section();
-  });
-  return bar;
-}
-
 void ModelView::connect_session() {
   connect(&session_, &Session::parts_changed, this, &ModelView::follow_parts);
   connect(&session_, &Session::study_changed, this, &ModelView::follow_study);
   connect(&session_, &Session::surfaces_changed, this, &ModelView::follow_surfaces);
   connect(&session_, &Session::selection_changed, this, &ModelView::follow_selection);
   connect(&session_, &Session::shown_changed, this, &ModelView::follow_mesh);
+  connect(&session_, &Session::place_shown, this,
+          [this](const Vec<3>& at, double radius, const QString& text) {
+            if (!scene_) return;
+            look_near(at, radius);
+            picks_->mark(at, text);
+            overlay_->update();
+          });
 }
 
 void ModelView::connect_actions() {
@@ -215,7 +117,7 @@ void ModelView::connect_actions() {
     refresh();
   });
   connect(actions_[Act::section], &QAction::toggled, this, [this](bool on) {
-    if (on == section_.has_value()) return;
+    if (on == section().has_value()) return;
     if (on) {
       start_section(-1);
     } else {
@@ -227,10 +129,14 @@ void ModelView::connect_actions() {
             [this, axis] { start_section(axis); });
   }
   connect(actions_[Act::flip], &QAction::triggered, this, [this] {
-    if (!section_) return;
-    section_->normal = -section_->normal;
-    apply_section();
+    if (std::optional<Section> now = section()) {
+      now->normal = -now->normal;
+      set_section(now);
+    }
   });
+  connect(actions_[Act::add_cut], &QAction::triggered, this, &ModelView::add_section);
+  for (int a = int(Act::pick_faces); a <= int(Act::box_zoom); ++a)
+    connect(actions_[Act(a)], &QAction::toggled, this, &ModelView::follow_mode);
   connect(actions_[Act::fit], &QAction::triggered, this, &ModelView::fit);
   connect(actions_[Act::perspective], &QAction::toggled, this, [this](bool on) {
     if (view_) view_->set_perspective(on);
@@ -251,64 +157,199 @@ void ModelView::follow_surfaces() {
   if (!scene_) return;
   std::vector<QColor> colors;
   for (std::size_t k = 0; k < session_.parts().size(); ++k)
-    colors.push_back(body_color(static_cast<int>(k), session_.parts()[k].color));
+    colors.push_back(session_.color_of(static_cast<int>(k)));
   scene_->set_parts(session_.parts(), colors);
+  groups_shown_.clear();
   follow_study();
 }
 
 void ModelView::follow_parts() {
   if (!scene_) return;
+  picks_->forget();
+  actions_.leave_mode();
+  current_cut_ = -1;
   follow_surfaces();
-  set_section(std::nullopt);
   tool_->set_bounds(scene_->bounds());
   look_isometric();
 }
 
 void ModelView::follow_selection() {
   if (!scene_) return;
-  scene_->set_selected(session_.selection());
+  const Item item = session_.item();
+  scene_->set_selected(item.kind == ItemKind::body ? session_.selection() : std::vector<int>{});
+  if (item.kind == ItemKind::cut) current_cut_ = item.index;
+  // Picking faces goes on only with a group to pick them for.
+  if (item.kind != ItemKind::group && item.kind != ItemKind::body &&
+      (actions_.mode() == Act::pick_faces || actions_.mode() == Act::pick_flood))
+    actions_.leave_mode();
   follow_study();
 }
 
+std::optional<Picked> ModelView::pick(const QPointF& at) const {
+  const double ratio = view_->devicePixelRatioF();
+  return scene_->pick(at.x() * ratio, (view_->height() - 1 - at.y()) * ratio);
+}
+
 bool ModelView::mouse(QMouseEvent* event) {
-  const bool taken = tool_->mouse(event);
+  if (event->type() == QEvent::MouseButtonPress) drag_merge_ = session_.new_merge();
+  // A mode has the clicks to itself, also where a handle is.
+  const bool free = actions_.mode() == Act::count;
+  const bool taken =
+      picks_->mouse(event) || (free && (size_tool_->mouse(event) || tool_->mouse(event)));
+  if (taken || event->type() == QEvent::MouseMove) overlay_->update();
+  const bool clicks = event->button() == Qt::LeftButton || event->button() == Qt::RightButton;
   if (event->type() == QEvent::MouseButtonPress) {
     pressed_.reset();
-    if (!taken && event->button() == Qt::LeftButton) pressed_ = event->position();
+    if (!taken && clicks) pressed_ = event->position();
   } else if (event->type() == QEvent::MouseButtonRelease && pressed_) {
     const QPointF moved = event->position() - *pressed_;
     pressed_.reset();
-    if (std::hypot(moved.x(), moved.y()) < 4) {
-      const double ratio = view_->devicePixelRatioF();
-      const int part = scene_->part_at(event->position().x() * ratio,
-                                       (view_->height() - 1 - event->position().y()) * ratio);
-      std::vector<int> parts = session_.selection();
-      if (part >= 0 && event->modifiers() & Qt::ControlModifier) {
-        if (std::erase(parts, part) == 0) parts.push_back(part);
-        session_.select(std::move(parts), part);
-      } else if (part >= 0) {
-        session_.select(part);
-      }
+    if (std::hypot(moved.x(), moved.y()) >= 4) return taken;
+    if (event->button() == Qt::RightButton) {
+      context_menu(event->position().toPoint());
+      return taken;
+    }
+    const std::optional<Picked> picked = pick(event->position());
+    if (picks_->click(picked)) {
+      follow_mode();
+      view_->update();
+      return taken;
+    }
+    const int part = picked ? picked->part : -1;
+    std::vector<int> parts = session_.selection();
+    if (part >= 0 && event->modifiers() & Qt::ControlModifier) {
+      if (std::erase(parts, part) == 0) parts.push_back(part);
+      session_.select(std::move(parts), part);
+    } else if (part >= 0) {
+      session_.select(part);
     }
   }
   return taken;
 }
 
+void ModelView::context_menu(const QPoint& at) {
+  const std::optional<Picked> picked = pick(at);
+  QMenu menu(this);
+  if (picked && picked->part >= 0) {
+    const int part = picked->part;
+    session_.select(part);
+    menu.addAction(
+        tr("Hide %1").arg(QString::fromStdString(session_.body(part).name)), this, [this, part] {
+          BodySettings body = session_.body(part);
+          body.visible = false;
+          session_.edit_body(part, tr("Hide %1").arg(QString::fromStdString(body.name)), body);
+        });
+    if (picked->face) {
+      menu.addAction(actions_[Act::add_group]->icon(), tr("New boundary group of this face"), this,
+                     [this, part, face = *picked->face] {
+                       add_group(session_, GroupKind::gate, session_.body(part).name, {face});
+                     });
+      menu.addAction(tr("Give this face a size"), this, [this, part, face = *picked->face] {
+        FacesShape shape;
+        shape.ids = {face};
+        add_sizing(session_, session_.body(part).name, tr("face size"), shape);
+      });
+    }
+    menu.addAction(actions_[Act::correct_near]->icon(), tr("Correct near this point"), this,
+                   [this, at] {
+                     actions_[Act::correct_near]->setChecked(true);
+                     picks_->click(pick(at));
+                     follow_mode();
+                   });
+    menu.addSeparator();
+  }
+  menu.addAction(tr("Show all bodies"), this, [this] {
+    Study study = session_.study();
+    for (BodySettings& body : study.bodies) body.visible = true;
+    session_.edit(tr("Show all bodies"), std::move(study));
+  });
+  for (const Act act : {Act::section, Act::fit, Act::view_iso, Act::measure, Act::save_picture})
+    menu.addAction(actions_[act]);
+  menu.exec(view_->mapToGlobal(at));
+}
+
+void ModelView::keyPressEvent(QKeyEvent* event) {
+  if (event->key() != Qt::Key_Escape) return QWidget::keyPressEvent(event);
+  actions_.leave_mode();
+  picks_->forget();
+  follow_mode();
+  view_->update();
+}
+
+void ModelView::follow_mode() {
+  if (!scene_) return;
+  if (actions_.mode() == Act::pick_faces || actions_.mode() == Act::correct_near ||
+      actions_.mode() == Act::measure)
+    view_->setFocus();
+  view_->setCursor(actions_.mode() == Act::count ? Qt::ArrowCursor : Qt::CrossCursor);
+  overlay_->set_hint(picks_->hint());
+  overlay_->update();
+}
+
 void ModelView::follow_study() {
   if (!scene_) return;
   std::vector<bool> visible;
+  std::vector<QColor> colors;
   int layers = 4;
-  for (const BodySettings& body : session_.study().bodies) visible.push_back(body.visible);
   const int count = static_cast<int>(session_.study().bodies.size());
+  for (int k = 0; k < count; ++k) {
+    visible.push_back(session_.body(k).visible);
+    colors.push_back(session_.color_of(k));
+  }
   if (count > 0) layers = session_.body(std::clamp(session_.selected(), 0, count - 1)).layers;
   scene_->set_visible(visible);
+  scene_->set_colors(colors);
   scene_->set_color_by(color_by(), layers);
+  follow_cuts();
+  follow_groups();
+  follow_sizes();
+  overlay_->set_hint(picks_->hint());
   refresh();
+}
+
+void ModelView::follow_groups() {
+  const Study& study = session_.study();
+  Study only;
+  only.groups = study.groups;
+  std::string key = study_to_json(only);
+  if (key == groups_shown_) return;
+  groups_shown_ = std::move(key);
+  std::vector<QColor> colors;
+  std::vector<std::vector<int>> facet_group;
+  for (const Part& part : session_.parts())
+    facet_group.emplace_back(part.surface.facets.size(), -1);
+  for (std::size_t g = 0; g < study.groups.size(); ++g) {
+    colors.push_back(group_color(static_cast<int>(g)));
+    for (std::size_t p = 0; p < session_.parts().size(); ++p) {
+      const Part& part = session_.parts()[p];
+      const bool here = study.groups[g].body == part.name ||
+                        (study.groups[g].body.empty() && session_.parts().size() == 1);
+      if (!here) continue;
+      // A group without faces yet is no mistake here.
+      const auto facets = facets_of(study.groups[g], part.surface);
+      if (!facets) continue;
+      for (const std::int32_t f : *facets) {
+        int& group = facet_group[p][static_cast<std::size_t>(f)];
+        if (group < 0) group = static_cast<int>(g);
+      }
+    }
+  }
+  scene_->set_groups(std::move(facet_group), std::move(colors));
+}
+
+void ModelView::follow_sizes() {
+  const Item item = session_.item();
+  const bool chosen = item.kind == ItemKind::sizing;
+  shapes_->set(session_.study().sizing, session_.parts(), chosen ? item.index : -1);
+  size_tool_->set(
+      chosen ? std::optional(session_.study().sizing[static_cast<std::size_t>(item.index)].shape)
+             : std::nullopt);
 }
 
 void ModelView::follow_mesh() {
   if (!scene_) return;
   const bool had = scene_->bounds()[0] <= scene_->bounds()[1];
+  picks_->forget();
   scene_->set_mesh(session_.shown_state());
   tool_->set_bounds(scene_->bounds());
   if (!had) look_isometric();
@@ -321,17 +362,11 @@ void ModelView::refresh() {
   view_->update();
 }
 
-void ModelView::set_color_by(ColorBy color_by) {
-  colors_->setCurrentIndex(colors_->findData(int(color_by)));
-}
+void ModelView::set_color_by(ColorBy color_by) { bar_->set_color_by(color_by); }
 
-ColorBy ModelView::color_by() const { return ColorBy(colors_->currentData().toInt()); }
+ColorBy ModelView::color_by() const { return bar_->color_by(); }
 
-void ModelView::start_section(int axis) {
-  if (!scene_ || session_.empty()) {
-    actions_[Act::section]->setChecked(false);
-    return;
-  }
+Section ModelView::section_across(int axis) const {
   const auto b = scene_->bounds();
   if (axis < 0) {
     // Across the longest side: the section that shows most walls.
@@ -345,48 +380,134 @@ void ModelView::start_section(int axis) {
   view_->renderer()->GetActiveCamera()->GetDirectionOfProjection(direction);
   if (direction[axis] > 0) section.normal = -section.normal;
   section.origin = Vec<3>((b[0] + b[1]) / 2, (b[2] + b[3]) / 2, (b[4] + b[5]) / 2);
-  set_section(section);
+  return section;
 }
 
-void ModelView::set_section(const std::optional<Section>& section) {
-  section_ = section;
-  actions_[Act::section]->setChecked(section.has_value());
-  actions_[Act::flip]->setEnabled(section.has_value());
-  if (!section)
-    for (const Act act : {Act::section_x, Act::section_y, Act::section_z})
-      actions_[act]->setChecked(false);
-  section_bar_->setVisible(section.has_value());
-  if (!scene_) return;
-  apply_section();
+void ModelView::start_section(int axis) {
+  if (!scene_ || session_.empty()) {
+    actions_[Act::section]->setChecked(false);
+    return;
+  }
+  const int cuts = static_cast<int>(session_.study().cuts.size());
+  if (axis < 0 && cuts > 0) {
+    current_cut_ = std::clamp(current_cut_, 0, cuts - 1);
+    edit_cut(session_, current_cut_, tr("Turn %1 on"), [](CutPlane& c) { c.on = true; });
+  } else {
+    set_section(section_across(axis));
+  }
 }
 
-void ModelView::apply_section() {
-  tool_->set(section_);
-  update_section_controls();
+void ModelView::add_section() {
+  if (!scene_ || session_.empty()) return;
+  // Across an axis that no cut is across yet.
+  int axis = -1;
+  for (int k = 0; k < 3 && axis < 0; ++k)
+    if (std::none_of(sections_.begin(), sections_.end(),
+                     [&](const Section& s) { return std::abs(s.normal[k]) > 0.9; }))
+      axis = k;
+  const Section section = section_across(axis);
+  add_cut(session_, section.origin, section.normal);
+}
+
+std::optional<Section> ModelView::section() const {
+  const auto& cuts = session_.study().cuts;
+  const auto k = static_cast<std::size_t>(current_cut_);
+  if (current_cut_ < 0 || k >= cuts.size() || !cuts[k].on) return {};
+  return Section{cuts[k].origin, cuts[k].normal};
+}
+
+void ModelView::set_section(const std::optional<Section>& section, int merge) {
+  const auto& cuts = session_.study().cuts;
+  if (section && current_cut_ >= 0 && current_cut_ < static_cast<int>(cuts.size())) {
+    edit_cut(
+        session_, current_cut_, tr("Move %1"),
+        [&](CutPlane& cut) {
+          cut.origin = section->origin;
+          cut.normal = section->normal;
+          cut.on = true;
+        },
+        merge);
+  } else if (section) {
+    // The handle is on the new cut, but what was selected stays so.
+    const Item item = session_.item();
+    const std::vector<int> parts = session_.selection();
+    current_cut_ = static_cast<int>(cuts.size());
+    add_cut(session_, section->origin, section->normal);
+    if (item.kind == ItemKind::body)
+      session_.select(parts, item.index);
+    else
+      session_.select_item(item);
+  } else if (std::any_of(cuts.begin(), cuts.end(), [](const CutPlane& c) { return c.on; })) {
+    Study study = session_.study();
+    for (CutPlane& cut : study.cuts) cut.on = false;
+    session_.edit(tr("Turn the cuts off"), std::move(study));
+  }
+}
+
+void ModelView::slide_to(double position, int merge) {
+  std::optional<Section> now = section();
+  if (!now) return;
+  now->origin += now->normal * (position - now->origin.dot(now->normal));
+  set_section(now, merge);
+}
+
+void ModelView::follow_cuts() {
+  const auto& cuts = session_.study().cuts;
+  if (!section()) {
+    current_cut_ = -1;
+    for (std::size_t k = 0; k < cuts.size(); ++k)
+      if (cuts[k].on) current_cut_ = static_cast<int>(k);
+    if (current_cut_ < 0) current_cut_ = static_cast<int>(cuts.size()) - 1;
+  }
+  std::vector<Section> on;
+  for (const CutPlane& cut : cuts)
+    if (cut.on) on.push_back({cut.origin, cut.normal});
+  const auto handle = section();
+  tool_->set(handle);
+  bar_->show_section(handle, scene_->bounds());
+  if (on.size() == sections_.size() &&
+      std::equal(on.begin(), on.end(), sections_.begin(), [](const Section& a, const Section& b) {
+        return a.origin == b.origin && a.normal == b.normal;
+      }))
+    return;
+  sections_ = std::move(on);
+  apply_sections();
+}
+
+void ModelView::apply_sections() {
   overlay_->update();
   if (section_pending_) return;
   // Many moves of the mouse in one turn of the event loop make one cut.
   section_pending_ = true;
   QTimer::singleShot(0, this, [this] {
+    if (!section_pending_) return;
     section_pending_ = false;
-    scene_->set_section(section_);
+    scene_->set_sections(sections_);
     refresh();
   });
 }
 
-void ModelView::update_section_controls() {
-  if (!section_) return;
-  for (int axis = 0; axis < 3; ++axis)
-    actions_[Act(int(Act::section_x) + axis)]->setChecked(std::abs(section_->normal[axis]) >
-                                                          0.9999);
-  const QSignalBlocker block_slider(slider_);
-  const QSignalBlocker block_position(position_);
-  const auto [low, high] = range_along(scene_->bounds(), section_->normal);
-  const double at = section_->origin.dot(section_->normal);
-  position_->setSingleStep(std::max(0.01, (high - low) / 100));
-  position_->setValue(at);
-  if (high > low)
-    slider_->setValue(static_cast<int>(std::lround((at - low) / (high - low) * slider_steps)));
+void ModelView::refresh_theme() {
+  if (!view_) return;
+  view_->refresh_theme();
+  view_->update();
+  overlay_->update();
+}
+
+void ModelView::set_quality_range(const std::optional<std::pair<double, double>>& range) {
+  if (!scene_) return;
+  scene_->set_quality_range(range);
+  refresh();
+}
+
+QImage ModelView::picture(const QSize& pixels) {
+  if (!view_) return {};
+  const QSize before = view_->size();
+  view_->resize(pixels / view_->devicePixelRatioF());
+  picture();  // so that what lies over the picture follows the new size
+  const QImage image = picture();
+  view_->resize(before);
+  return image;
 }
 
 void ModelView::fit() {
@@ -445,13 +566,14 @@ void ModelView::look_near(const Vec<3>& center, double radius) {
 
 void ModelView::look_at_section() {
   if (!view_ || session_.empty()) return;
-  if (!section_) start_section(-1);
+  if (!section()) start_section(-1);
+  const Section cut = *section();
   auto bounds = scene_->bounds();
   // Of the box, what is left behind the plane and near it.
   for (int axis = 0; axis < 3; ++axis) {
-    const double n = section_->normal[axis];
+    const double n = cut.normal[axis];
     if (std::abs(n) < 0.9) continue;
-    const double at = section_->origin[axis];
+    const double at = cut.origin[axis];
     double depth = 0;
     for (int other = 0; other < 3; ++other)
       if (other != axis) depth = std::max(depth, bounds[2 * other + 1] - bounds[2 * other]);
@@ -463,7 +585,7 @@ void ModelView::look_at_section() {
       bounds[2 * axis + 1] = std::min(bounds[2 * axis + 1], at + depth * 0.8);
     }
   }
-  const Vec<3> n = section_->normal;
+  const Vec<3> n = cut.normal;
   const Vec<3> up = std::abs(n[2]) > 0.9 ? Vec<3>::UnitY() : Vec<3>::UnitZ();
   const Vec<3> from = (n + 0.45 * up + 0.4 * n.cross(up)).normalized();
   view_->look(-from, up, bounds);
@@ -473,7 +595,7 @@ QImage ModelView::picture() {
   if (!view_) return {};
   if (section_pending_) {
     section_pending_ = false;
-    scene_->set_section(section_);
+    scene_->set_sections(sections_);
     refresh();
   }
   overlay_->set_handle_visible(false);

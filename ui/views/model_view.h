@@ -9,17 +9,19 @@
 #include "ui/views/scene.h"
 #include "ui/views/section_tool.h"
 
-class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QMouseEvent;
-class QSlider;
+class QKeyEvent;
 
 namespace lamella::ui {
 
 class Actions;
 class Overlay;
+class PickTools;
 class Session;
+class SizeShapes;
+class SizeTool;
+class ViewBar;
 class VtkView;
 
 /// The 3D view of the session with its bar: coloring, edges, section and standard views.
@@ -32,11 +34,19 @@ class ModelView : public QWidget {
 
   /// The picture as seen, with legend and scale; without the section's handle.
   QImage picture();
-  const std::optional<Section>& section() const { return section_; }
-  void set_section(const std::optional<Section>& section);
+  /// The same, so many pixels wide and high.
+  QImage picture(const QSize& pixels);
+  /// The cut that has the handle, if it is on.
+  std::optional<Section> section() const;
+  /// Moves that cut, or adds one; nothing turns all cuts off.
+  void set_section(const std::optional<Section>& section, int merge = 0);
   void set_color_by(ColorBy color_by);
   ColorBy color_by() const;
   void fit();
+  /// Draws with the colors of the theme.
+  void refresh_theme();
+  /// Draws only elements with a quality in the range; nothing: all.
+  void set_quality_range(const std::optional<std::pair<double, double>>& range);
   /// Looks along `direction`, `up` upward.
   void look(const Vec<3>& direction, const Vec<3>& up);
   void look_isometric();
@@ -47,8 +57,11 @@ class ModelView : public QWidget {
   const Scene* scene() const { return scene_.get(); }
   VtkView* vtk_view() const { return view_; }
 
+ protected:
+  /// Escape ends the mode of the mouse and forgets what was measured.
+  void keyPressEvent(QKeyEvent* event) override;
+
  private:
-  QWidget* make_bar();
   void connect_session();
   void connect_actions();
   void follow_parts();
@@ -58,9 +71,17 @@ class ModelView : public QWidget {
   Vec<3> first_direction() const;
   void follow_study();
   void follow_mesh();
-  void apply_section();
-  void update_section_controls();
+  void follow_cuts();
+  void follow_groups();
+  void follow_sizes();
+  void follow_mode();
+  void apply_sections();
   void start_section(int axis);
+  void add_section();
+  Section section_across(int axis) const;
+  void slide_to(double position, int merge);
+  std::optional<Picked> pick(const QPointF& at) const;
+  void context_menu(const QPoint& at);
   void refresh();
 
   Session& session_;
@@ -70,12 +91,16 @@ class ModelView : public QWidget {
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<SectionTool> tool_;
   std::optional<QPointF> pressed_;  // where a click may have begun
-  QComboBox* colors_ = nullptr;
-  QWidget* section_bar_ = nullptr;
-  QSlider* slider_ = nullptr;
-  QDoubleSpinBox* position_ = nullptr;
-  std::optional<Section> section_;
+  ViewBar* bar_ = nullptr;
+  std::unique_ptr<PickTools> picks_;
+  std::unique_ptr<SizeShapes> shapes_;
+  std::unique_ptr<SizeTool> size_tool_;
+  int current_cut_ = -1;  // has the handle; -1: none
+  std::vector<Section> sections_;
+  int drag_merge_ = 0;
+  std::pair<int, int> size_merge_{-1, 0};  // press of the size tool, and its step to undo
   bool section_pending_ = false;
+  std::string groups_shown_;
 };
 
 }  // namespace lamella::ui

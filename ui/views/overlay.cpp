@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "ui/theme.h"
-#include "ui/views/section_tool.h"
 #include "ui/views/vtk_view.h"
 
 namespace lamella::ui {
@@ -24,8 +23,7 @@ double round_down(double x) {
 
 }  // namespace
 
-Overlay::Overlay(VtkView& view, const SectionTool& tool)
-    : QWidget(&view), view_(view), tool_(tool) {
+Overlay::Overlay(VtkView& view) : QWidget(&view), view_(view) {
   setAttribute(Qt::WA_TransparentForMouseEvents);
   setAttribute(Qt::WA_NoSystemBackground);
   connect(&view, &VtkView::rendered, this, &Overlay::follow_camera);
@@ -33,6 +31,16 @@ Overlay::Overlay(VtkView& view, const SectionTool& tool)
 
 void Overlay::set_legend(const Legend& legend) {
   legend_ = legend;
+  update();
+}
+
+void Overlay::add(Painting painting, bool handle) {
+  paintings_.emplace_back(std::move(painting), handle);
+}
+
+void Overlay::set_hint(const QString& hint) {
+  if (hint == hint_) return;
+  hint_ = hint;
   update();
 }
 
@@ -64,11 +72,24 @@ void Overlay::follow_camera() {
 void Overlay::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
-  if (handle_visible_) tool_.paint(painter);
+  for (const auto& [painting, handle] : paintings_)
+    if (handle_visible_ || !handle) painting(painter);
+  if (handle_visible_ && !hint_.isEmpty()) paint_hint(painter);
   if (!scale_visible_) return;
   paint_axes(painter);
   paint_scale(painter);
   paint_legend(painter);
+}
+
+void Overlay::paint_hint(QPainter& painter) const {
+  painter.setFont(font());
+  const double text_width = painter.fontMetrics().horizontalAdvance(hint_);
+  const QRectF box((width() - text_width) / 2 - 16, 14, text_width + 32, 32);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(QColor(0x1f, 0x29, 0x33, 225));
+  painter.drawRoundedRect(box, 16, 16);
+  painter.setPen(Qt::white);
+  painter.drawText(box, Qt::AlignCenter, hint_);
 }
 
 void Overlay::paint_legend(QPainter& painter) const {
@@ -81,7 +102,9 @@ void Overlay::paint_legend(QPainter& painter) const {
   const int height = legend_.map.stops.empty() ? 58 : legend_.missing.isEmpty() ? 68 : 88;
   const QRectF box(margin, margin, bar_width + 28, height);
   painter.setPen(QPen(theme::border, 1));
-  painter.setBrush(QColor(255, 255, 255, 232));
+  QColor paper = theme::panel;
+  paper.setAlpha(232);
+  painter.setBrush(paper);
   painter.drawRoundedRect(box, 8, 8);
   painter.setPen(theme::text);
   QFont bold = font();

@@ -2,21 +2,29 @@
 
 #include <QWidget>
 #include <array>
+#include <functional>
+#include <utility>
+#include <vector>
 
 #include "ui/views/color_map.h"
 
 namespace lamella::ui {
 
-class SectionTool;
 class VtkView;
 
-/// What is drawn over the 3D picture: legend, scale in mm, axes and the section handle. Lets every
-/// mouse event through.
+/// What is drawn over the 3D picture: legend, scale in mm, axes and the handles of tools. Lets
+/// every mouse event through.
 class Overlay : public QWidget {
   Q_OBJECT
 
  public:
-  Overlay(VtkView& view, const SectionTool& tool);
+  explicit Overlay(VtkView& view);
+
+  using Painting = std::function<void(QPainter&)>;
+  /// Drawn over the picture, in the order given; a handle is left out of pictures.
+  void add(Painting painting, bool handle);
+  /// A line at the bottom that tells what to do; empty: none.
+  void set_hint(const QString& hint);
 
   void set_legend(const Legend& legend);
   /// Off while there is nothing to measure.
@@ -28,12 +36,14 @@ class Overlay : public QWidget {
 
  private:
   void follow_camera();
+  void paint_hint(QPainter& painter) const;
   void paint_legend(QPainter& painter) const;
   void paint_scale(QPainter& painter) const;
   void paint_axes(QPainter& painter) const;
 
   VtkView& view_;
-  const SectionTool& tool_;
+  std::vector<std::pair<Painting, bool>> paintings_;
+  QString hint_;
   Legend legend_;
   bool scale_visible_ = false;
   bool handle_visible_ = true;

@@ -8,13 +8,13 @@
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkExtractGeometry.h>
 #include <vtkFloatArray.h>
+#include <vtkImplicitBoolean.h>
 #include <vtkIntArray.h>
 #include <vtkLight.h>
 #include <vtkLookupTable.h>
 #include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
 #include <vtkTypeInt64Array.h>
@@ -28,6 +28,7 @@
 
 #include "ui/theme.h"
 #include "ui/views/mesh_data.h"
+#include "ui/views/scene_actors.h"
 
 namespace lamella::ui {
 namespace {
@@ -38,30 +39,6 @@ constexpr const char* thickness_array = "thickness";
 constexpr const char* layers_array = "layers";
 constexpr const char* quality_array = "quality";
 
-void set_color(vtkProperty& property, const QColor& color) {
-  property.SetColor(color.redF(), color.greenF(), color.blueF());
-}
-
-void style_lines(vtkActor& actor, vtkPolyDataMapper& mapper) {
-  mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-1, -8);
-  actor.SetMapper(&mapper);
-  actor.GetProperty()->SetColor(0.10, 0.15, 0.21);
-  actor.GetProperty()->SetLineWidth(1.6F);
-  actor.GetProperty()->LightingOff();
-}
-
-/// Paler and warmer: the inside of a cut body.
-QColor inside_color(const QColor& c) {
-  return {(c.red() + 2 * 255) / 3, (c.green() + 2 * 250) / 3, (c.blue() + 2 * 238) / 3};
-}
-
-struct PartActors {
-  std::string name;
-  QColor color;
-  vtkSmartPointer<vtkActor> surface;
-  vtkSmartPointer<vtkActor> features;
-};
-
 }  // namespace
 
 struct Scene::Impl {
@@ -70,22 +47,22 @@ struct Scene::Impl {
   std::vector<bool> visible;
   std::vector<int> selected;
   double mesh_edge = 0;  // typical of what is drawn, mm; 0: unknown
-  double cut_edge = 0;
-  double pixel = 0;  // mm
+  double pixel = 0;      // mm
   std::shared_ptr<const MeshState> state;
-  std::vector<std::array<NodeId, 3>> outer;  // sorted boundary faces of the mesh, each sorted
+  // Boundary faces of the mesh, each sorted, with their numbers; sorted.
+  std::vector<std::pair<std::array<NodeId, 3>, int>> outer;
+  std::vector<std::vector<int>> facet_group;  // [part][facet of its surface]
+  std::vector<std::vector<int>> face_group;   // [part][CAD face], -1: not all of it
+  std::vector<QColor> group_colors;
+  std::optional<std::pair<double, double>> quality_range;
   std::vector<int> part_of_body;
   vtkSmartPointer<vtkUnstructuredGrid> grid;
   vtkSmartPointer<vtkPolyData> skin;  // of the whole grid, made when first needed
   vtkNew<vtkActor> mesh_actor;
   vtkNew<vtkPolyDataMapper> mesh_mapper;
-  vtkNew<vtkActor> cut_actor;  // where the section goes through elements
-  vtkNew<vtkPolyDataMapper> cut_mapper;
   vtkNew<vtkActor> mesh_lines;  // features, where there is no part to take them from
   vtkNew<vtkPolyDataMapper> mesh_lines_mapper;
-  vtkNew<vtkPlane> cut_plane;   // for the elements: keeps the negative side
-  vtkNew<vtkPlane> clip_plane;  // for mappers: they keep the positive side
-  std::optional<Section> section;
+  std::vector<Cut> cuts;
   ColorBy color_by = ColorBy::body;
   int layers_asked = 4;
   bool edges = true;
@@ -97,18 +74,8 @@ struct Scene::Impl {
 
   explicit Impl(vtkRenderer& r) : renderer(r) {
     vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
-    for (const auto& [actor, mapper] : {std::pair{mesh_actor.Get(), mesh_mapper.Get()},
-                                        std::pair{cut_actor.Get(), cut_mapper.Get()}}) {
-      actor->SetMapper(mapper);
-      vtkProperty* property = actor->GetProperty();
-      property->SetInterpolationToFlat();
-      property->SetAmbient(0.42);
-      property->SetDiffuse(0.68);
-      property->SetEdgeColor(0.22, 0.28, 0.35);
-      property->SetLineWidth(1);
-      actor->VisibilityOff();
-      renderer.AddActor(actor);
-    }
+    style_mesh(*mesh_actor, *mesh_mapper);
+    renderer.AddActor(mesh_actor);
     style_lines(*mesh_lines, *mesh_lines_mapper);
     renderer.AddActor(mesh_lines);
     // A key light over the left shoulder gives faces of different slope different shades; the
@@ -189,9 +156,11 @@ struct Scene::Impl {
     }
     mesh_actor->SetVisibility(state != nullptr);
     mesh_lines->SetVisibility(state != nullptr && parts.empty() && features);
-    cut_actor->SetVisibility(state != nullptr && section && !crinkle);
     mesh_actor->GetProperty()->SetEdgeVisibility(edges);
-    cut_actor->GetProperty()->SetEdgeVisibility(edges);
+    for (const Cut& cut : cuts) {
+      cut.actor->SetVisibility(state != nullptr && !crinkle);
+      cut.actor->GetProperty()->SetEdgeVisibility(edges);
+    }
   }
 
   /// The elements of visible bodies as a grid that remembers their numbers.
@@ -209,6 +178,10 @@ struct Scene::Impl {
     for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
       if (!mesh.element_body.empty() &&
           !body_visible[static_cast<std::size_t>(mesh.element_body[e])])
+        continue;
+      if (quality_range && has(ColorBy::quality) &&
+          !(state->quality[e] >= quality_range->first &&
+            state->quality[e] <= quality_range->second))
         continue;
       for (const NodeId node : mesh.elements[e]) corners->InsertNextValue(node);
       element->InsertNextValue(static_cast<int>(e));
@@ -259,44 +232,55 @@ struct Scene::Impl {
   void update_mesh() {
     shown = 0;
     mesh_mapper->RemoveAllClippingPlanes();
-    cut_mapper->RemoveAllInputs();
+    for (const Cut& cut : cuts) cut.mapper->RemoveAllInputs();
     update_visibility();
     if (!grid) {
       mesh_mapper->RemoveAllInputs();
       recolor();
       return;
     }
-    if (section && crinkle) {
-      vtkNew<vtkExtractGeometry> cut;
-      cut->SetInputData(grid);
-      cut->SetImplicitFunction(cut_plane);
-      cut->ExtractInsideOn();
-      cut->ExtractBoundaryCellsOn();
-      cut->Update();
-      shown = static_cast<std::size_t>(cut->GetOutput()->GetNumberOfCells());
-      mesh_mapper->SetInputData(skin_of(cut->GetOutput()));
+    if (!cuts.empty() && crinkle) {
+      vtkNew<vtkImplicitBoolean> kept;
+      kept->SetOperationTypeToIntersection();
+      for (const Cut& cut : cuts) kept->AddFunction(cut.keep);
+      vtkNew<vtkExtractGeometry> extract;
+      extract->SetInputData(grid);
+      extract->SetImplicitFunction(kept);
+      extract->ExtractInsideOn();
+      extract->ExtractBoundaryCellsOn();
+      extract->Update();
+      shown = static_cast<std::size_t>(extract->GetOutput()->GetNumberOfCells());
+      mesh_mapper->SetInputData(skin_of(extract->GetOutput()));
     } else {
       if (!skin) skin = skin_of(grid);
       mesh_mapper->SetInputData(skin);
       shown = static_cast<std::size_t>(grid->GetNumberOfCells());
-      if (section) {
-        mesh_mapper->AddClippingPlane(clip_plane);
-        vtkNew<vtkCutter> cut;
-        cut->SetInputData(grid);
-        cut->SetCutFunction(cut_plane);
-        cut->GenerateTrianglesOff();
-        cut->Update();
-        auto data = vtkSmartPointer<vtkPolyData>::New();
-        data->ShallowCopy(cut->GetOutput());
-        cut_mapper->SetInputData(data);
-        shown = static_cast<std::size_t>(data->GetNumberOfCells());
-      }
+      if (!cuts.empty()) cut_through();
     }
     mesh_edge = typical_edge(*mesh_mapper->GetInput());
-    cut_edge =
-        cut_mapper->GetNumberOfInputConnections(0) > 0 ? typical_edge(*cut_mapper->GetInput()) : 0;
     shade_edges();
     recolor();
+  }
+
+  /// Faces where the planes go through elements, each cut off by the other planes.
+  void cut_through() {
+    shown = 0;
+    for (Cut& cut : cuts) {
+      mesh_mapper->AddClippingPlane(cut.clip);
+      vtkNew<vtkCutter> cutter;
+      cutter->SetInputData(grid);
+      cutter->SetCutFunction(cut.keep);
+      cutter->GenerateTrianglesOff();
+      cutter->Update();
+      auto data = vtkSmartPointer<vtkPolyData>::New();
+      data->ShallowCopy(cutter->GetOutput());
+      cut.mapper->SetInputData(data);
+      cut.mapper->RemoveAllClippingPlanes();
+      for (const Cut& other : cuts)
+        if (&other != &cut) cut.mapper->AddClippingPlane(other.clip);
+      cut.edge = typical_edge(*data);
+      shown += static_cast<std::size_t>(data->GetNumberOfCells());
+    }
   }
 
   void shade_edges() {
@@ -309,7 +293,7 @@ struct Scene::Impl {
       actor.GetProperty()->SetEdgeColor(mix(0.24, 0.56), mix(0.29, 0.59), mix(0.35, 0.63));
     };
     shade_one(*mesh_actor, mesh_edge);
-    shade_one(*cut_actor, cut_edge);
+    for (const Cut& cut : cuts) shade_one(*cut.actor, cut.edge);
   }
 
   void recolor() {
@@ -321,21 +305,66 @@ struct Scene::Impl {
                                                       : tr("Layers through the wall");
       legend.missing = state ? tr("not in this mesh") : tr("known once the part is meshed");
     }
+    color_parts();
     if (!grid) return;
     // Shading gives a body its shape, but the colors of values must be those of the legend.
     const bool values = color_by != ColorBy::body && has(color_by);
     mesh_actor->GetProperty()->SetAmbient(values ? 0.74 : 0.42);
     mesh_actor->GetProperty()->SetDiffuse(values ? 0.28 : 0.68);
-    cut_actor->GetProperty()->SetAmbient(1);
-    cut_actor->GetProperty()->SetDiffuse(0);
     if (color_by != ColorBy::body && has(color_by)) fill_legend();
     color(*mesh_mapper, false);
-    if (cut_mapper->GetNumberOfInputConnections(0) > 0) color(*cut_mapper, true);
+    for (const Cut& cut : cuts) {
+      cut.actor->GetProperty()->SetAmbient(1);
+      cut.actor->GetProperty()->SetDiffuse(0);
+      if (cut.mapper->GetNumberOfInputConnections(0) > 0) color(*cut.mapper, true);
+    }
   }
 
-  bool is_outer(std::array<NodeId, 3> face) const {
+  /// Number of the boundary facet with these nodes; -1: it is inside.
+  int facet_with(std::array<NodeId, 3> face) const {
     std::sort(face.begin(), face.end());
-    return std::binary_search(outer.begin(), outer.end(), face);
+    const auto it = std::lower_bound(outer.begin(), outer.end(), std::pair(face, -1));
+    return it != outer.end() && it->first == face ? it->second : -1;
+  }
+
+  /// Group of a facet of the mesh: that of its CAD face, if all of it is in one; -1: none.
+  int group_of(int part, std::size_t facet) const {
+    const SimplexMesh<3>& mesh = state->mesh;
+    const auto p = static_cast<std::size_t>(part);
+    if (part < 0 || p >= face_group.size() || facet >= mesh.facet_face.size()) return -1;
+    const auto face = static_cast<std::size_t>(mesh.facet_face[facet]);
+    if (face >= face_group[p].size()) return -1;
+    return face_group[p][face];
+  }
+
+  /// Parts in their colors, facets of groups in those of the groups.
+  void color_parts() {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      vtkPolyData* data =
+          vtkPolyDataMapper::SafeDownCast(parts[p].surface->GetMapper())->GetInput();
+      vtkMapper* mapper = parts[p].surface->GetMapper();
+      const bool grouped =
+          p < facet_group.size() &&
+          std::any_of(facet_group[p].begin(), facet_group[p].end(), [](int g) { return g >= 0; });
+      mapper->SetScalarVisibility(grouped);
+      if (!grouped || state) continue;
+      vtkNew<vtkUnsignedCharArray> rgb;
+      rgb->SetName("group color");
+      rgb->SetNumberOfComponents(3);
+      rgb->SetNumberOfTuples(data->GetNumberOfCells());
+      for (vtkIdType f = 0; f < data->GetNumberOfCells(); ++f) {
+        const int g = facet_group[p][static_cast<std::size_t>(f)];
+        const QColor& c = g < 0 ? parts[p].color : group_colors[static_cast<std::size_t>(g)];
+        const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
+                                        static_cast<unsigned char>(c.green()),
+                                        static_cast<unsigned char>(c.blue())};
+        rgb->SetTypedTuple(f, bytes);
+      }
+      data->GetCellData()->SetScalars(rgb);
+      mapper->SetScalarModeToUseCellData();
+      mapper->SetColorModeToDirectScalars();
+      data->Modified();
+    }
   }
 
   /// `inside`: every face was made by the section.
@@ -385,16 +414,23 @@ struct Scene::Impl {
     rgb->SetNumberOfComponents(3);
     rgb->SetNumberOfTuples(faces);
     vtkNew<vtkIdList> corner;
+    const bool opened = (!cuts.empty() && crinkle) || quality_range;
     for (vtkIdType f = 0; f < faces; ++f) {
       const int e = element->GetValue(f);
-      QColor c = color_of_body(
-          state->mesh.element_body.empty() ? 0 : state->mesh.element_body[std::size_t(e)]);
+      const int body =
+          state->mesh.element_body.empty() ? 0 : state->mesh.element_body[std::size_t(e)];
+      QColor c = color_of_body(body);
       bool made_by_section = inside;
-      if (section && crinkle && !inside) {
+      if (!inside && (opened || !group_colors.empty())) {
         data.GetCellPoints(f, corner);
-        made_by_section =
-            !is_outer({node->GetValue(corner->GetId(0)), node->GetValue(corner->GetId(1)),
-                       node->GetValue(corner->GetId(2))});
+        const int facet =
+            facet_with({node->GetValue(corner->GetId(0)), node->GetValue(corner->GetId(1)),
+                        node->GetValue(corner->GetId(2))});
+        made_by_section = facet < 0;
+        const int group = facet < 0 ? -1
+                                    : group_of(part_of_body[static_cast<std::size_t>(body)],
+                                               static_cast<std::size_t>(facet));
+        if (group >= 0) c = group_colors[static_cast<std::size_t>(group)];
       }
       if (made_by_section) c = inside_color(c);
       const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
@@ -442,43 +478,16 @@ void Scene::set_parts(const std::vector<Part>& parts, const std::vector<QColor>&
   impl_->parts.clear();
   impl_->visible.assign(parts.size(), true);
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    PartActors actors;
-    actors.name = parts[k].name;
-    actors.color = colors[k];
-    vtkNew<vtkPolyDataNormals> normals;
-    normals->SetInputData(surface_data(parts[k].surface));
-    normals->ConsistencyOff();
-    normals->SplittingOn();
-    normals->SetFeatureAngle(32);
-    normals->Update();
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(normals->GetOutput());
-    actors.surface = vtkSmartPointer<vtkActor>::New();
-    actors.surface->SetMapper(mapper);
-    vtkProperty* property = actors.surface->GetProperty();
-    set_color(*property, colors[k]);
-    property->SetAmbient(0.40);
-    property->SetDiffuse(0.70);
-    property->SetSpecular(0.08);
-    property->SetSpecularPower(20);
-    property->SetEdgeColor(0.3, 0.36, 0.42);
-    vtkNew<vtkProperty> back;
-    set_color(*back, inside_color(colors[k]));
-    back->SetAmbient(0.6);
-    back->SetDiffuse(0.4);
-    actors.surface->SetBackfaceProperty(back);
-
-    vtkNew<vtkPolyDataMapper> lines;
-    lines->SetInputData(feature_data(parts[k].surface));
-    actors.features = vtkSmartPointer<vtkActor>::New();
-    style_lines(*actors.features, *lines);
+    PartActors actors = part_actors(parts[k], colors[k]);
     impl_->renderer.AddActor(actors.surface);
     impl_->renderer.AddActor(actors.features);
     impl_->parts.push_back(std::move(actors));
   }
+  impl_->facet_group.clear();
+  impl_->face_group.clear();
   impl_->update_bounds();
-  set_section(impl_->section);
-  impl_->update_visibility();
+  clip_parts();
+  impl_->update_mesh();
 }
 
 void Scene::set_mesh(std::shared_ptr<const MeshState> state) {
@@ -493,8 +502,11 @@ void Scene::set_mesh(std::shared_ptr<const MeshState> state) {
       impl_->part_of_body.push_back(
           part == impl_->parts.end() ? -1 : static_cast<int>(part - impl_->parts.begin()));
     }
-    impl_->outer = mesh.facets;
-    for (auto& facet : impl_->outer) std::sort(facet.begin(), facet.end());
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+      auto face = mesh.facets[f];
+      std::sort(face.begin(), face.end());
+      impl_->outer.emplace_back(face, static_cast<int>(f));
+    }
     std::sort(impl_->outer.begin(), impl_->outer.end());
     if (impl_->parts.empty()) impl_->mesh_lines_mapper->SetInputData(feature_data(mesh));
   }
@@ -518,26 +530,83 @@ void Scene::set_selected(const std::vector<int>& parts) {
   impl_->update_visibility();
 }
 
-int Scene::part_at(double x, double y) const {
+std::optional<Picked> Scene::pick(double x, double y) const {
   vtkNew<vtkCellPicker> picker;
   picker->SetTolerance(0);
   picker->PickFromListOn();
   for (const PartActors& part : impl_->parts)
     if (part.surface->GetVisibility()) picker->AddPickList(part.surface);
-  for (vtkActor* actor : {impl_->mesh_actor.Get(), impl_->cut_actor.Get()})
-    if (actor->GetVisibility()) picker->AddPickList(actor);
-  if (!picker->Pick(x, y, 0, &impl_->renderer)) return -1;
-  for (std::size_t k = 0; k < impl_->parts.size(); ++k)
-    if (picker->GetActor() == impl_->parts[k].surface) return static_cast<int>(k);
-  auto* element = vtkIntArray::SafeDownCast(
-      picker->GetDataSet() ? picker->GetDataSet()->GetCellData()->GetArray(element_array)
-                           : nullptr);
-  if (!element || picker->GetCellId() < 0 || !impl_->state) return -1;
-  const auto e = static_cast<std::size_t>(element->GetValue(picker->GetCellId()));
+  if (impl_->mesh_actor->GetVisibility()) picker->AddPickList(impl_->mesh_actor);
+  for (const Cut& cut : impl_->cuts)
+    if (cut.actor->GetVisibility()) picker->AddPickList(cut.actor);
+  if (!picker->Pick(x, y, 0, &impl_->renderer) || picker->GetCellId() < 0) return {};
+  Picked picked;
+  picker->GetPickPosition(picked.point.data());
+  for (std::size_t k = 0; k < impl_->parts.size(); ++k) {
+    if (picker->GetActor() != impl_->parts[k].surface) continue;
+    picked.part = static_cast<int>(k);
+    picked.face = impl_->parts[k].facet_face[static_cast<std::size_t>(picker->GetCellId())];
+    return picked;
+  }
+  vtkDataSet* data = picker->GetDataSet();
+  auto* element =
+      data ? vtkIntArray::SafeDownCast(data->GetCellData()->GetArray(element_array)) : nullptr;
+  if (!element || !impl_->state) return {};
   const SimplexMesh<3>& mesh = impl_->state->mesh;
-  return impl_
-      ->part_of_body[mesh.element_body.empty() ? 0
-                                               : static_cast<std::size_t>(mesh.element_body[e])];
+  picked.element = element->GetValue(picker->GetCellId());
+  const auto e = static_cast<std::size_t>(picked.element);
+  picked.part = impl_->part_of_body[mesh.element_body.empty()
+                                        ? 0
+                                        : static_cast<std::size_t>(mesh.element_body[e])];
+  if (picker->GetActor() == impl_->mesh_actor) {
+    auto* node = vtkIntArray::SafeDownCast(data->GetPointData()->GetArray(node_array));
+    vtkNew<vtkIdList> corner;
+    data->GetCellPoints(picker->GetCellId(), corner);
+    const int facet =
+        impl_->facet_with({node->GetValue(corner->GetId(0)), node->GetValue(corner->GetId(1)),
+                           node->GetValue(corner->GetId(2))});
+    if (facet >= 0 && static_cast<std::size_t>(facet) < mesh.facet_face.size())
+      picked.face = mesh.facet_face[static_cast<std::size_t>(facet)];
+  }
+  return picked;
+}
+
+void Scene::set_colors(const std::vector<QColor>& colors) {
+  bool changed = false;
+  for (std::size_t k = 0; k < impl_->parts.size() && k < colors.size(); ++k) {
+    PartActors& part = impl_->parts[k];
+    if (part.color == colors[k]) continue;
+    changed = true;
+    set_part_color(part, colors[k]);
+  }
+  if (changed) impl_->recolor();
+}
+
+void Scene::set_groups(std::vector<std::vector<int>> facet_group, std::vector<QColor> colors) {
+  if (facet_group == impl_->facet_group && colors == impl_->group_colors) return;
+  impl_->facet_group = std::move(facet_group);
+  impl_->group_colors = std::move(colors);
+  // A face of the mesh is in a group where all of its CAD face is.
+  impl_->face_group.assign(impl_->facet_group.size(), {});
+  for (std::size_t p = 0; p < impl_->facet_group.size() && p < impl_->parts.size(); ++p) {
+    const std::vector<std::int32_t>& face = impl_->parts[p].facet_face;
+    constexpr int unmet = -3;
+    std::vector<int>& of = impl_->face_group[p];
+    for (std::size_t f = 0; f < face.size(); ++f) {
+      const auto id = static_cast<std::size_t>(face[f]);
+      if (of.size() <= id) of.resize(id + 1, unmet);
+      const int group = impl_->facet_group[p][f];
+      of[id] = of[id] == unmet || of[id] == group ? group : -1;
+    }
+  }
+  impl_->recolor();
+}
+
+void Scene::set_quality_range(const std::optional<std::pair<double, double>>& range) {
+  if (range == impl_->quality_range) return;
+  impl_->quality_range = range;
+  impl_->build_grid();
+  impl_->update_mesh();
 }
 
 bool Scene::set_pixel_size(double size) {
@@ -548,31 +617,34 @@ bool Scene::set_pixel_size(double size) {
 }
 
 void Scene::set_color_by(ColorBy color_by, int layers_asked) {
+  if (color_by == impl_->color_by && layers_asked == impl_->layers_asked) return;
   impl_->color_by = color_by;
   impl_->layers_asked = layers_asked;
   impl_->recolor();
 }
 
-void Scene::set_section(const std::optional<Section>& section) {
-  impl_->section = section;
-  if (section) {
-    Vec<3> origin = section->origin;
-    Vec<3> normal = section->normal;
-    impl_->cut_plane->SetOrigin(origin.data());
-    impl_->cut_plane->SetNormal(normal.data());
-    normal = -normal;
-    impl_->clip_plane->SetOrigin(origin.data());
-    impl_->clip_plane->SetNormal(normal.data());
+void Scene::set_sections(const std::vector<Section>& sections) {
+  for (const Cut& cut : impl_->cuts) impl_->renderer.RemoveActor(cut.actor);
+  impl_->cuts.clear();
+  for (const Section& section : sections) {
+    Cut cut = make_cut(section.origin, section.normal);
+    impl_->renderer.AddActor(cut.actor);
+    impl_->cuts.push_back(std::move(cut));
   }
-  for (const PartActors& part : impl_->parts) {
-    for (vtkActor* actor : {part.surface.Get(), part.features.Get()}) {
-      actor->GetMapper()->RemoveAllClippingPlanes();
-      if (section) actor->GetMapper()->AddClippingPlane(impl_->clip_plane);
-    }
-  }
-  impl_->mesh_lines_mapper->RemoveAllClippingPlanes();
-  if (section) impl_->mesh_lines_mapper->AddClippingPlane(impl_->clip_plane);
+  clip_parts();
   impl_->update_mesh();
+}
+
+void Scene::clip_parts() {
+  const auto clip = [this](vtkMapper& mapper) {
+    mapper.RemoveAllClippingPlanes();
+    for (const Cut& cut : impl_->cuts) mapper.AddClippingPlane(cut.clip);
+  };
+  for (const PartActors& part : impl_->parts) {
+    clip(*part.surface->GetMapper());
+    clip(*part.features->GetMapper());
+  }
+  clip(*impl_->mesh_lines_mapper);
 }
 
 void Scene::set_crinkle(bool on) {

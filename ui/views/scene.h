@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/surface.h"
@@ -20,6 +21,14 @@ struct Section {
   Vec<3> normal = Vec<3>::UnitX();
 };
 
+/// What lies under a pixel.
+struct Picked {
+  int part = -1;                     ///< -1: a mesh without its part
+  Vec<3> point = Vec<3>::Zero();     ///< mm
+  std::optional<std::int32_t> face;  ///< CAD face, unless it was cut open
+  int element = -1;                  ///< of the mesh; -1: none is shown
+};
+
 /// Parts and meshes as pixels of one renderer. Shows the surfaces of the parts, or a mesh once it
 /// is given one. Every number it colors by comes with the MeshState.
 class Scene {
@@ -34,16 +43,23 @@ class Scene {
   void set_visible(const std::vector<bool>& visible);
   /// Parts outlined in the accent color.
   void set_selected(const std::vector<int>& parts);
-  /// The part seen at `x`, `y` (device pixels from the bottom left); -1: none.
-  int part_at(double x, double y) const;
+  /// What is seen at `x`, `y` (device pixels from the bottom left).
+  std::optional<Picked> pick(double x, double y) const;
+  /// Other colors, one a part.
+  void set_colors(const std::vector<QColor>& colors);
+  /// Boundary groups: [part][facet of its surface] number of the group or -1, and their colors.
+  void set_groups(std::vector<std::vector<int>> facet_group, std::vector<QColor> colors);
+  /// Only elements with a quality in [low, high] are drawn; nothing: all.
+  void set_quality_range(const std::optional<std::pair<double, double>>& range);
   /// mm a pixel of the picture has: edges of elements a few pixels wide are drawn fainter, or the
   /// picture would be all edges.
   /// True when that asks for another picture.
   bool set_pixel_size(double size);
   /// `layers_asked` centers the scale of ColorBy::layers.
   void set_color_by(ColorBy color_by, int layers_asked);
-  /// Cuts the mesh as `set_crinkle` says, and the parts smoothly.
-  void set_section(const std::optional<Section>& section);
+  /// Cuts the mesh as `set_crinkle` says, and the parts smoothly; what is on the far side of any of
+  /// the planes goes.
+  void set_sections(const std::vector<Section>& sections);
   /// True (the default): the section leaves whole elements; false: it cuts through them.
   void set_crinkle(bool on);
   void set_edges(bool on);
@@ -59,6 +75,8 @@ class Scene {
   std::size_t shown_elements() const;
 
  private:
+  void clip_parts();
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

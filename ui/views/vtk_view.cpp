@@ -15,6 +15,8 @@
 #include <QWheelEvent>
 #include <cmath>
 
+#include "ui/theme.h"
+
 namespace lamella::ui {
 namespace {
 
@@ -70,9 +72,7 @@ VtkView::VtkView(QWidget* parent) : QOpenGLWidget(parent), vtk_(std::make_unique
   vtk_->window->SetMultiSamples(0);
   vtk_->window->AddRenderer(vtk_->renderer);
   vtk_->renderer->SetGradientBackground(true);
-  // VTK's gradient runs upward: the lighter color belongs to the top.
-  vtk_->renderer->SetBackground(0.86, 0.892, 0.925);
-  vtk_->renderer->SetBackground2(0.985, 0.988, 0.992);
+  refresh_theme();
   vtk_->renderer->GetActiveCamera()->ParallelProjectionOn();
   vtkNew<vtkCallbackCommand> make;
   make->SetCallback(make_current);
@@ -82,6 +82,17 @@ VtkView::VtkView(QWidget* parent) : QOpenGLWidget(parent), vtk_(std::make_unique
   is->SetCallback(is_current);
   is->SetClientData(&context_);
   vtk_->window->AddObserver(vtkCommand::WindowIsCurrentEvent, is);
+}
+
+void VtkView::refresh_theme() {
+  // VTK's gradient runs upward: the lighter color belongs to the top.
+  if (theme::dark) {
+    vtk_->renderer->SetBackground(0.17, 0.20, 0.23);
+    vtk_->renderer->SetBackground2(0.30, 0.34, 0.38);
+  } else {
+    vtk_->renderer->SetBackground(0.86, 0.892, 0.925);
+    vtk_->renderer->SetBackground2(0.985, 0.988, 0.992);
+  }
 }
 
 VtkView::~VtkView() {
@@ -225,6 +236,12 @@ void VtkView::fit(const std::array<double, 6>& bounds) {
   }
   vtk_->renderer->ResetCameraClippingRange();
   update();
+}
+
+void VtkView::zoom_to(const QRectF& box) {
+  pan(QPointF(width() / 2.0, height() / 2.0) - box.center());
+  zoom(std::min(width() / box.width(), height() / box.height()),
+       QPointF(width() / 2.0, height() / 2.0));
 }
 
 void VtkView::set_perspective(bool on) {

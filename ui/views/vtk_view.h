@@ -3,6 +3,7 @@
 #include <QOpenGLWidget>
 #include <QPointF>
 #include <QPointer>
+#include <QRectF>
 #include <array>
 #include <functional>
 #include <memory>
@@ -43,8 +44,12 @@ class VtkView : public QOpenGLWidget {
   /// Looks along `direction` with `up` upward and fits `bounds` (x0 x1 y0 y1 z0 z1).
   void look(const Vec<3>& direction, const Vec<3>& up, const std::array<double, 6>& bounds);
   void fit(const std::array<double, 6>& bounds);
+  /// Brings what is in a rectangle of the picture close.
+  void zoom_to(const QRectF& box);
   void set_perspective(bool on);
   bool perspective() const;
+  /// Background in the colors of the theme.
+  void refresh_theme();
 
   /// Sees mouse events before the camera does; returns true to keep one for itself.
   using MouseFilter = std::function<bool(QMouseEvent*)>;

@@ -11,11 +11,17 @@ namespace {
 Study full_study() {
   Study study;
   study.name = "Tr\u00e4ger \"A\"";
-  study.inputs = {"parts/a.step", "/abs/b.stl"};
+  study.inputs = {{"parts/a.step"}, {"/abs/b.stl", 25.4}};
+  study.left_out = {"pin (2)"};
   study.bodies = {{"cover", 6, 0.5, 0.01, 3.5, false}, {"lid"}};
   study.bodies[1].layers2 = 5;
   study.bodies[1].alpha2 = 9.5;
   study.bodies[1].layers3 = 2;
+  study.bodies[1].color = {0.1, 0.2, 1};
+  study.groups = {{"inlet", GroupKind::gate, "cover", {3, 1}, {"top \"1\""}, {{{1, 2, 3}, 0.5}}},
+                  {"rest"}};
+  study.groups[1].faces = {0};
+  study.cuts = {{"middle", {1, 2, 3.25}, {0, 0.6, -0.8}, false}};
   study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood, true, false, 512};
   return study;
 }
@@ -28,6 +34,23 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   ASSERT_TRUE(back.ok()) << back.error().message;
   EXPECT_EQ(back->name, study.name);
   EXPECT_EQ(back->inputs, study.inputs);
+  EXPECT_EQ(back->left_out, study.left_out);
+  EXPECT_EQ(back->bodies.at(1).color, study.bodies[1].color);
+  EXPECT_FALSE(back->bodies.at(0).color.has_value());
+  ASSERT_EQ(back->groups.size(), 2u);
+  EXPECT_EQ(back->groups[0].name, "inlet");
+  EXPECT_EQ(back->groups[0].kind, GroupKind::gate);
+  EXPECT_EQ(back->groups[0].body, "cover");
+  EXPECT_EQ(back->groups[0].faces, study.groups[0].faces);
+  EXPECT_EQ(back->groups[0].face_names, study.groups[0].face_names);
+  ASSERT_EQ(back->groups[0].floods.size(), 1u);
+  EXPECT_EQ(back->groups[0].floods[0].point, Vec<3>(1, 2, 3));
+  EXPECT_EQ(back->groups[0].floods[0].angle, 0.5);
+  ASSERT_EQ(back->cuts.size(), 1u);
+  EXPECT_EQ(back->cuts[0].name, "middle");
+  EXPECT_EQ(back->cuts[0].origin, study.cuts[0].origin);
+  EXPECT_LT((back->cuts[0].normal - study.cuts[0].normal).norm(), 1e-15);
+  EXPECT_FALSE(back->cuts[0].on);
   ASSERT_EQ(back->bodies.size(), 2u);
   EXPECT_EQ(back->bodies[0].name, "cover");
   EXPECT_EQ(back->bodies[0].layers, 6);
@@ -50,6 +73,19 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(back->options.memory, study.options.memory);
   EXPECT_FALSE(back->options.until_settled);
   EXPECT_EQ(study_to_json(*back), study_to_json(study));
+}
+
+TEST(StudyFile, SavingKeepsWhatWasThereAsABackup) {
+  const test::TemporaryFolder folder;
+  Study study = full_study();
+  ASSERT_TRUE(save_study(study, folder / "s.lamella"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "s.lamella.bak"));
+  const std::string first = study_to_json(study);
+  study.options.iterations = 2;
+  ASSERT_TRUE(save_study(study, folder / "s.lamella"));
+  EXPECT_EQ(*read_file(folder / "s.lamella.bak"), first);
+  EXPECT_EQ(*read_file(folder / "s.lamella"), study_to_json(study));
+  EXPECT_FALSE(save_study(study, folder / "nowhere" / "s.lamella"));
 }
 
 /// One object of each shape and each thing to ask.

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <QWidget>
+
+#include "core/study/group.h"
+
+class QComboBox;
+class QDoubleSpinBox;
+class QLabel;
+class QLineEdit;
+class QListWidget;
+
+namespace lamella::ui {
+
+class Actions;
+class Session;
+
+/// Properties of the selected boundary group: name, kind, and the faces it is made of.
+class GroupPage : public QWidget {
+  Q_OBJECT
+
+ public:
+  GroupPage(Session& session, Actions& actions, QWidget* parent = nullptr);
+  void refresh();
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  const BoundaryGroup* group() const;
+  void remove_chosen();
+
+  Session& session_;
+  QLineEdit* name_;
+  QComboBox* kind_;
+  QLabel* body_;
+  QLabel* area_;
+  QDoubleSpinBox* angle_;
+  QListWidget* faces_;
+};
+
+}  // namespace lamella::ui

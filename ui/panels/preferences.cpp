@@ -1,0 +1,46 @@
+#include "ui/panels/preferences.h"
+
+#include <QComboBox>
+#include <QSettings>
+#include <QVBoxLayout>
+
+#include "ui/panels/form.h"
+
+namespace lamella::ui {
+
+Preferences::Preferences(QWidget* parent) : QDialog(parent) {
+  setWindowTitle(tr("Preferences"));
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(20, 16, 20, 20);
+  auto* form = new Form;
+  auto* theme = new QComboBox;
+  theme->setObjectName("theme");
+  theme->addItem(tr("light"));
+  theme->addItem(tr("dark"));
+  theme->setCurrentIndex(QSettings().value("dark", false).toBool() ? 1 : 0);
+  form->add(tr("Theme"), theme);
+  auto* memory = integer_box(
+      0, 10000000, "memory_budget",
+      tr("Of studies begun from now on: a run that is expected to take more does not start"));
+  memory->setSpecialValueText(tr("no bound"));
+  memory->setSuffix(tr(" MB"));
+  memory->setSingleStep(1000);
+  memory->setValue(QSettings().value("memory_budget", 0).toInt());
+  form->add(tr("Memory budget"), memory);
+  auto* threads = integer_box(0, 256, "default_threads", tr("Of studies begun from now on"));
+  threads->setSpecialValueText(tr("all cores"));
+  threads->setValue(QSettings().value("threads", 0).toInt());
+  form->add(tr("Threads"), threads);
+  layout->addLayout(form);
+  setMinimumWidth(360);
+  connect(theme, &QComboBox::currentIndexChanged, this, [this](int index) {
+    QSettings().setValue("dark", index == 1);
+    Q_EMIT theme_changed(index == 1);
+  });
+  connect(memory, &QSpinBox::valueChanged, this,
+          [](int mb) { QSettings().setValue("memory_budget", mb); });
+  connect(threads, &QSpinBox::valueChanged, this,
+          [](int count) { QSettings().setValue("threads", count); });
+}
+
+}  // namespace lamella::ui

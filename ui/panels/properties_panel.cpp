@@ -1,0 +1,71 @@
+#include "ui/panels/properties_panel.h"
+
+#include <QLabel>
+#include <QScrollArea>
+#include <QStackedWidget>
+#include <QVBoxLayout>
+
+#include "ui/panels/body_page.h"
+#include "ui/panels/cut_page.h"
+#include "ui/panels/group_page.h"
+#include "ui/panels/mesh_page.h"
+#include "ui/panels/sizing_page.h"
+#include "ui/session/session.h"
+
+namespace lamella::ui {
+
+PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actions& actions,
+                                 QWidget* parent)
+    : QFrame(parent), session_(session) {
+  setObjectName("panel");
+  auto* outer = new QVBoxLayout(this);
+  outer->setContentsMargins(1, 1, 1, 1);
+  auto* scroll = new QScrollArea;
+  scroll_ = scroll;
+  scroll->setWidgetResizable(true);
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  outer->addWidget(scroll);
+  content_ = new QWidget;
+  content_->setObjectName("properties");
+  auto* layout = new QVBoxLayout(content_);
+  layout->setContentsMargins(14, 10, 14, 12);
+  layout->setSpacing(10);
+  pages_ = new QStackedWidget;
+  body_ = new BodyPage(session);
+  group_ = new GroupPage(session, actions);
+  sizing_ = new SizingPage(session, forecaster);
+  cut_ = new CutPage(session);
+  for (QWidget* page : std::initializer_list<QWidget*>{body_, group_, sizing_, cut_})
+    pages_->addWidget(page);
+  mesh_ = new MeshPage(session);
+  layout->addWidget(pages_, 1);
+  empty_ = new QLabel(tr("The settings of what is selected appear here."));
+  empty_->setObjectName("faint");
+  empty_->setAlignment(Qt::AlignCenter);
+  empty_->setWordWrap(true);
+  outer->addWidget(empty_);
+  layout->addWidget(mesh_);
+  scroll->setWidget(content_);
+
+  connect(&session, &Session::parts_changed, this, &PropertiesPanel::refresh);
+  connect(&session, &Session::surfaces_changed, this, &PropertiesPanel::refresh);
+  connect(&session, &Session::selection_changed, this, &PropertiesPanel::refresh);
+  connect(&session, &Session::study_changed, this, &PropertiesPanel::refresh);
+  refresh();
+}
+
+void PropertiesPanel::refresh() {
+  scroll_->setVisible(!session_.parts().empty());
+  empty_->setVisible(session_.parts().empty());
+  // Between a new study and its parts the two lists may differ for a moment.
+  if (session_.study().bodies.size() != session_.parts().size()) return;
+  pages_->setCurrentIndex(static_cast<int>(session_.item().kind));
+  body_->refresh();
+  group_->refresh();
+  sizing_->refresh();
+  cut_->refresh();
+  mesh_->refresh();
+}
+
+}  // namespace lamella::ui

@@ -1,0 +1,145 @@
+#include "ui/session/command_line.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+namespace lamella::ui {
+namespace {
+
+std::string quoted(const std::string& text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) ||
+           std::string_view("._-/,:=+~").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (plain) return text;
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+/// As short as it can be read back to the same value.
+std::string number(double value) {
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  return {text, end.ptr};
+}
+
+std::string numbers(const Vec<3>& v) {
+  return number(v[0]) + ',' + number(v[1]) + ',' + number(v[2]);
+}
+
+Error cannot(const std::string& what) {
+  return {Code::usage, "The options of lamella-cli cannot say " + what + ".",
+          "Save the study: the command can take it as it is."};
+}
+
+bool same(const BodySettings& a, const BodySettings& b) {
+  return a.layers == b.layers && a.alpha == b.alpha && a.h_min == b.h_min && a.h_max == b.h_max &&
+         a.layers2 == b.layers2 && a.alpha2 == b.alpha2 && a.layers3 == b.layers3;
+}
+
+Result<std::string> sizing_options(const Study& study) {
+  std::string text;
+  const SizeCorrection* first = nullptr;
+  for (const SizingObject& object : study.sizing) {
+    const auto* asked = std::get_if<SizeCorrection>(&object.asks);
+    if (!asked) return cannot("\"" + object.name + "\", an analytic zone");
+    if (first &&
+        (first->gradation != asked->gradation || first->keep_directions != asked->keep_directions))
+      return cannot("sizes that grow differently");
+    if (!first) first = asked;
+    const std::string size = asked->size ? number(*asked->size) : number(*asked->factor) + "x";
+    const auto* faces = std::get_if<FacesShape>(&object.shape);
+    if (!faces && !object.body.empty() && study.bodies.size() > 1)
+      return cannot("that \"" + object.name + "\" is for one body only");
+    const auto* box = std::get_if<BoxShape>(&object.shape);
+    if (const auto* s = std::get_if<SphereShape>(&object.shape)) {
+      text += " --size-sphere " + numbers(s->center) + ',' + number(s->radius) + ',' + size;
+    } else if (box && box->x_axis == Vec<3>::UnitX() && box->y_axis == Vec<3>::UnitY()) {
+      text += " --size-box " + numbers(box->center - 0.5 * box->size) + ',' +
+              numbers(box->center + 0.5 * box->size) + ',' + size;
+    } else if (const auto* c = std::get_if<CylinderShape>(&object.shape)) {
+      text += " --size-cylinder " + numbers(c->from) + ',' + numbers(c->to) + ',' +
+              number(c->radius) + ',' + size;
+    } else if (faces && faces->depth == 0) {
+      const std::string body = object.body.empty() ? "" : object.body + ":";
+      for (const std::int32_t id : faces->ids)
+        text += " --size-face " + quoted(body + std::to_string(id) + ',' + size);
+      for (const std::string& name : faces->names)
+        text += " --size-face " + quoted(body + name + ',' + size);
+    } else {
+      return cannot("the shape of \"" + object.name + "\"");
+    }
+  }
+  if (first && first->gradation != SizeCorrection{}.gradation)
+    text += " --size-gradation " + number(first->gradation);
+  if (first && first->keep_directions) text += " --size-keep-directions";
+  return text;
+}
+
+Result<std::string> group_options(const Study& study) {
+  std::string text;
+  for (const BoundaryGroup& group : study.groups) {
+    if (group.kind != group_kind_of(group.name))
+      return cannot("the kind of group \"" + group.name + "\"");
+    const std::string head = group.name + '=' + (group.body.empty() ? "" : group.body + ":");
+    std::string faces;
+    for (const std::int32_t id : group.faces)
+      faces += (faces.empty() ? "" : ",") + std::to_string(id);
+    for (const std::string& name : group.face_names) faces += (faces.empty() ? "" : ",") + name;
+    if (!faces.empty()) text += " --group " + quoted(head + faces);
+    for (const Flood& flood : group.floods)
+      text += " --group " + quoted(head + numbers(flood.point) + '~' + number(flood.angle));
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<std::string> command_line(const Study& study) {
+  if (!study.left_out.empty()) return cannot("which bodies are left out");
+  std::string text = "lamella-cli mesh";
+  for (const StudyInput& input : study.inputs) text += ' ' + quoted(input.file);
+  const double unit = study.inputs.empty() ? 1 : study.inputs.front().unit;
+  for (const StudyInput& input : study.inputs)
+    if (input.unit != unit) return cannot("different units of several STL files");
+  const std::pair<double, const char*> units[] = {{10, "cm"}, {1000, "m"}, {25.4, "inch"}};
+  for (const auto& [mm, name] : units)
+    if (unit == mm) text += std::string(" --unit ") + name;
+  for (const BodySettings& body : study.bodies)
+    if (!same(body, study.bodies.front())) return cannot("settings that differ between bodies");
+  const BodySettings body = study.bodies.empty() ? BodySettings{} : study.bodies.front();
+  text += " -n " + std::to_string(body.layers);
+  if (body.alpha != BodySettings{}.alpha) text += " --alpha " + number(body.alpha);
+  if (body.layers2)
+    text += " --layers2 " + std::to_string(*body.layers2) + " --alpha2 " + number(body.alpha2);
+  if (body.layers3) text += " --layers3 " + std::to_string(*body.layers3);
+  if (body.h_min) text += " --h-min " + number(*body.h_min);
+  if (body.h_max) text += " --h-max " + number(*body.h_max);
+  const StudyOptions& o = study.options;
+  const StudyOptions usual;
+  if (o.chord_tolerance) text += " --chord-tolerance " + number(*o.chord_tolerance);
+  if (o.angle_tolerance != usual.angle_tolerance)
+    text += " --angle-tolerance " + number(o.angle_tolerance);
+  if (o.iterations != usual.iterations) text += " --iterations " + std::to_string(o.iterations);
+  if (o.threads != usual.threads) text += " --threads " + std::to_string(o.threads);
+  if (o.seed != usual.seed) text += " --seed " + std::to_string(o.seed);
+  if (!o.until_settled) return cannot("that all iterations are to be made");
+  if (o.memory) text += " --memory " + number(*o.memory);
+  if (o.progressive) text += " --progressive";
+  if (o.detector != usual.detector) text += " --detector " + std::string(detector_name(o.detector));
+  const Result<std::string> sizing = sizing_options(study);
+  if (!sizing) return sizing.error();
+  const Result<std::string> groups = group_options(study);
+  if (!groups) return groups.error();
+  return text + *sizing + *groups + " -o " + quoted(study.name + ".msh");
+}
+
+std::string command_line_for(const std::string& study_file) {
+  const std::filesystem::path file(study_file);
+  return "lamella-cli mesh " + quoted(study_file) + " -o " +
+         quoted(std::filesystem::path(file).replace_extension(".msh").string());
+}
+
+}  // namespace lamella::ui

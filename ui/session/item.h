@@ -1,0 +1,16 @@
+#pragma once
+
+namespace lamella::ui {
+
+/// What the study tree lists: bodies and what is made on them.
+enum class ItemKind { body, group, sizing, cut };
+
+/// One entry of the study, by its place in its list.
+struct Item {
+  ItemKind kind = ItemKind::body;
+  int index = -1;
+
+  bool operator==(const Item&) const = default;
+};
+
+}  // namespace lamella::ui

@@ -1,0 +1,75 @@
+#include "ui/session/read_parts.h"
+
+#include <algorithm>
+#include <set>
+
+namespace lamella::ui {
+
+Result<ReadParts> read_parts(const Services& services,
+                             const std::vector<std::filesystem::path>& files,
+                             const std::vector<double>& units, const LoadParams& params,
+                             const Progress& progress) {
+  ReadParts read;
+  const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, files.size()));
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const auto at = static_cast<double>(k);
+    LoadParams own = params;
+    own.unit = units[k];
+    auto loaded =
+        services.load_parts(files[k], own, progress.portion(share * at, share * (at + 1)));
+    if (!loaded) return loaded.error();
+    for (std::size_t p = 0; p < loaded->size(); ++p) {
+      read.parts.push_back(std::move((*loaded)[p]));
+      read.sources.push_back({files[k], p, units[k]});
+    }
+  }
+  return read;
+}
+
+void name_parts(ReadParts& read, std::size_t first, const std::vector<std::string>& left_out,
+                bool drop_left_out) {
+  std::set<std::string> taken;
+  for (std::size_t k = 0; k < first; ++k) taken.insert(read.parts[k].name);
+  if (!drop_left_out) taken.insert(left_out.begin(), left_out.end());
+  for (std::size_t k = first; k < read.parts.size(); ++k) {
+    const std::string base = read.parts[k].name;
+    for (int n = 2; !taken.insert(read.parts[k].name).second; ++n)
+      read.parts[k].name = base + " (" + std::to_string(n) + ")";
+  }
+  if (!drop_left_out) return;
+  for (std::size_t k = read.parts.size(); k-- > first;) {
+    if (std::find(left_out.begin(), left_out.end(), read.parts[k].name) == left_out.end()) continue;
+    read.parts.erase(read.parts.begin() + static_cast<std::ptrdiff_t>(k));
+    read.sources.erase(read.sources.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+}
+
+Result<std::vector<Part>> read_again(const Services& services, const std::vector<Part>& parts,
+                                     const std::vector<PartSource>& sources,
+                                     const LoadParams& params, const Progress& progress) {
+  std::vector<Part> all = parts;
+  std::vector<Part> file;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (k == 0 || sources[k].file != sources[k - 1].file ||
+        sources[k].unit != sources[k - 1].unit) {
+      LoadParams own = params;
+      own.unit = sources[k].unit;
+      const auto count = static_cast<double>(all.size());
+      auto loaded = services.load_parts(
+          sources[k].file, own,
+          progress.portion(static_cast<double>(k) / count, static_cast<double>(k + 1) / count));
+      if (!loaded) return loaded.error();
+      file = std::move(*loaded);
+    }
+    if (sources[k].index >= file.size())
+      return Error{Code::bad_input,
+                   "\"" + sources[k].file.string() + "\" has changed since it was opened.",
+                   "Open it again."};
+    Part part = file[sources[k].index];
+    part.name = all[k].name;
+    all[k] = std::move(part);
+  }
+  return all;
+}
+
+}  // namespace lamella::ui

@@ -1,0 +1,105 @@
+#include "ui/window_tools.h"
+
+#include <QApplication>
+#include <QClipboard>
+#include <QMenu>
+#include <QStandardPaths>
+
+#include "ui/actions/actions.h"
+#include "ui/main_window.h"
+#include "ui/panels/banner.h"
+#include "ui/panels/palette.h"
+#include "ui/panels/preferences.h"
+#include "ui/panels/shortcut_sheet.h"
+#include "ui/session/command_line.h"
+#include "ui/session/recent_files.h"
+#include "ui/session/recovery.h"
+#include "ui/session/session.h"
+#include "ui/theme.h"
+#include "ui/views/model_view.h"
+
+namespace lamella::ui {
+
+WindowTools::WindowTools(MainWindow& window) : QObject(&window), window_(window) {
+  Actions& act = window.actions();
+  recent_ = new QMenu(tr("Open &recent"), &window);
+  palette_ = new Palette(&window);
+  recovery_ =
+      new Recovery(window.session(),
+                   QStandardPaths::writableLocation(QStandardPaths::AppDataLocation).toStdString() +
+                       "/recovery");
+  connect(recent_, &QMenu::aboutToShow, this, &WindowTools::fill_recent);
+  connect(&window.session(), &Session::saved, this,
+          [](const QString& file) { remember_file(file); });
+  const auto all = [&act] {
+    std::vector<QAction*> actions;
+    for (int a = 0; a < int(Act::count); ++a) actions.push_back(act[Act(a)]);
+    return actions;
+  };
+  connect(act[Act::search], &QAction::triggered, this, [this, all] { palette_->open(all()); });
+  connect(act[Act::shortcuts], &QAction::triggered, this, [this, all] {
+    auto* sheet = new ShortcutSheet(all(), &window_);
+    sheet->setAttribute(Qt::WA_DeleteOnClose);
+    sheet->show();
+  });
+  connect(act[Act::preferences], &QAction::triggered, this, [this] {
+    auto* preferences = new Preferences(&window_);
+    preferences->setAttribute(Qt::WA_DeleteOnClose);
+    connect(preferences, &Preferences::theme_changed, this, [this](bool dark) {
+      apply_theme(*qApp, dark);
+      window_.actions().refresh_icons();
+      window_.view().refresh_theme();
+    });
+    preferences->show();
+  });
+  connect(act[Act::copy_command], &QAction::triggered, this, &WindowTools::copy_command);
+}
+
+void WindowTools::copy_command() {
+  const Session& session = window_.session();
+  Result<std::string> line = command_line(session.study());
+  // What options cannot say a saved study can.
+  if (!line && !session.file().empty() && !session.modified())
+    line = command_line_for(session.file().string());
+  if (!line) {
+    window_.banner().show_message(Banner::Kind::info, QString::fromStdString(line.error().message),
+                                  QString::fromStdString(line.error().hint));
+    return;
+  }
+  const QString text = QString::fromStdString(*line);
+  QApplication::clipboard()->setText(text);
+  window_.banner().show_message(Banner::Kind::done, tr("Copied"), text);
+}
+
+void WindowTools::fill_recent() {
+  recent_->clear();
+  for (const QString& file : recent_files())
+    recent_->addAction(file, this, [this, file] { window_.open_files({file}); });
+  if (recent_->isEmpty()) recent_->addAction(tr("Nothing yet"))->setEnabled(false);
+}
+
+void WindowTools::offer_recovery() {
+  const std::vector<Recovery::Left> left = recovery_->left_behind();
+  if (left.empty()) return;
+  const Recovery::Left last = left.back();
+  const QString name = last.made_for.empty()
+                           ? tr("a study that was never saved")
+                           : QString::fromStdString(last.made_for.filename().string());
+  window_.banner().show_message(
+      Banner::Kind::info, tr("Lamella ended without saving %1.").arg(name),
+      tr("Its last state was kept."),
+      {{tr("Restore"),
+        [this, last] {
+          Session& session = window_.session();
+          session.open_study(last.file, last.made_for);
+          // It goes once it is open here, where it is kept anew.
+          connect(
+              &session, &Session::parts_changed, this, [last] { Recovery::discard(last); },
+              Qt::SingleShotConnection);
+        }},
+       {tr("Discard"), [left] {
+          for (const Recovery::Left& one : left) Recovery::discard(one);
+        }}});
+}
+
+}  // namespace lamella::ui
