@@ -253,8 +253,10 @@ Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface, const Genera
     if (now >= deadline) break;
     const auto& start = surface.facets[random.next() % surface.facets.size()];
     const NodeId apex = attempt == 0 ? 0 : start[0] + 1;
-    // Half of what is left, so that a slow stall does not use up the others' time.
-    const auto until = attempt + 1 == kAttempts ? deadline : now + (deadline - now) / 2;
+    // The first attempt is the best; of what is left half each, so that a slow stall does not use
+    // up the others' time.
+    const auto share = attempt == 0 ? 3 * (deadline - now) / 4 : (deadline - now) / 2;
+    const auto until = attempt + 1 == kAttempts ? deadline : now + share;
     Attempt<D> work(boundary, surface, random.next(), until, progress);
     if (work.run(apex, attempt % 2 == 0 && locator ? &*locator : nullptr)) {
       SimplexMesh<D> mesh = to_mesh(work.mesh(), surface);
