@@ -183,6 +183,8 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
   load.chord_tolerance = study.options.chord_tolerance;
   load.angle_tolerance = study.options.angle_tolerance;
   load.unit = unit_factor(c.unit);
+  load.repair = repair_choice(c.repair);
+  load.wrap_spacing = c.wrap_spacing;
   Result<std::vector<Part>> parts = load_all(request->files, load, progress.portion(0, 0.05));
   if (!parts) return console.fail(parts.error());
   apply_to_bodies(c, *parts, study);
@@ -258,6 +260,8 @@ int run_generate(const GenerateCommand& c, Console& console) {
   LoadParams load;
   load.chord_tolerance = c.chord_tolerance;
   load.unit = unit_factor(c.unit);
+  load.repair = repair_choice(c.repair);
+  load.wrap_spacing = c.wrap_spacing;
   Result<std::vector<Part>> parts = load_all({c.surface}, load, progress.portion(0, 0.1));
   if (!parts) return console.fail(parts.error());
 
@@ -272,6 +276,7 @@ int run_generate(const GenerateCommand& c, Console& console) {
         progress.portion(0.1 + 0.8 * at / count, 0.1 + 0.8 * (at + 1) / count, "first mesh");
     Result<FirstMesh> mesh = first_mesh(part, meshers, share);
     if (!mesh) return console.fail(mesh.error());
+    for (const std::string& note : part.notes) console.say(part.name + ": " + note);
     for (const std::string& note : mesh->notes) console.say(part.name + ": " + note);
     MeshReport found = inspect<3>(mesh->mesh).value();
     console.say(part.name + ": " + grouped(found.nodes) + " nodes, " + grouped(found.elements) +
@@ -283,6 +288,7 @@ int run_generate(const GenerateCommand& c, Console& console) {
                        {"elements", found.elements},
                        {"volume", found.volume},
                        {"cad_volume", part.cad_volume},
+                       {"surface_notes", part.notes},
                        {"notes", mesh->notes}}));
     states[b].mesh = std::move(mesh->mesh);
     pointers.push_back(&states[b]);
