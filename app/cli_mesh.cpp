@@ -193,6 +193,8 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
   LoadParams load;
   load.chord_tolerance = study.options.chord_tolerance;
   load.angle_tolerance = study.options.angle_tolerance;
+  load.repair = repair_choice(c.repair);
+  load.wrap_spacing = c.wrap_spacing;
   Result<std::vector<Part>> parts =
       load_all(request->files, study, load, progress.portion(0, 0.05));
   if (!parts) return console.fail(parts.error());
@@ -268,6 +270,8 @@ int run_generate(const GenerateCommand& c, Console& console) {
   const Progress progress = console.progress();
   LoadParams load;
   load.chord_tolerance = c.chord_tolerance;
+  load.repair = repair_choice(c.repair);
+  load.wrap_spacing = c.wrap_spacing;
   Study study;
   study.inputs = {{c.surface, unit_factor(c.unit)}};
   Result<std::vector<Part>> parts = load_all({c.surface}, study, load, progress.portion(0, 0.1));
@@ -284,6 +288,7 @@ int run_generate(const GenerateCommand& c, Console& console) {
         progress.portion(0.1 + 0.8 * at / count, 0.1 + 0.8 * (at + 1) / count, "first mesh");
     Result<FirstMesh> mesh = first_mesh(part, meshers, share);
     if (!mesh) return console.fail(mesh.error());
+    for (const std::string& note : part.notes) console.say(part.name + ": " + note);
     for (const std::string& note : mesh->notes) console.say(part.name + ": " + note);
     MeshReport found = inspect<3>(mesh->mesh).value();
     console.say(part.name + ": " + grouped(found.nodes) + " nodes, " + grouped(found.elements) +
@@ -295,6 +300,7 @@ int run_generate(const GenerateCommand& c, Console& console) {
                        {"elements", found.elements},
                        {"volume", found.volume},
                        {"cad_volume", part.cad_volume},
+                       {"surface_notes", part.notes},
                        {"notes", mesh->notes}}));
     states[b].mesh = std::move(mesh->mesh);
     pointers.push_back(&states[b]);

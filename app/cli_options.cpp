@@ -42,6 +42,18 @@ void add_unit(CLI::App* app, Text& unit) {
       ->check(CLI::IsMember({"mm", "cm", "m", "inch"}));
 }
 
+void add_repair(CLI::App* app, std::string& repair, std::optional<double>& spacing) {
+  app->add_option("--repair", repair,
+                  "Broken surfaces: none is changed (none), small named repairs and a wrap where "
+                  "they do not do (auto), or a wrap of every body (wrap) [auto]")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"none", "auto", "wrap"}));
+  app->add_option("--wrap-spacing", spacing,
+                  "Grid of a wrap, mm [1/160 of the diagonal, finer where walls would be lost]")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+}
+
 void add_mesher(CLI::App* app, std::string& mesher) {
   app->add_option(
          "--mesher", mesher,
@@ -186,6 +198,11 @@ void add_groups(CLI::App* m, MeshCommand& mesh) {
 
 double unit_factor(const std::string& unit) { return kUnits.at(unit); }
 
+Repair repair_choice(const std::string& name) {
+  if (name == "none") return Repair::none;
+  return name == "wrap" ? Repair::wrap : Repair::automatic;
+}
+
 MesherChoice mesher_choice(const std::string& name) {
   if (name == "topological") return MesherChoice::topological;
   if (name == "netgen") return MesherChoice::netgen;
@@ -260,6 +277,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   add_sizing(m, mesh);
   add_groups(m, mesh);
   add_unit(m, mesh.unit);
+  add_repair(m, mesh.repair, mesh.wrap_spacing);
   add_mesher(m, mesh.mesher);
   m->add_option("--detector", mesh.detector,
                 "Who finds the thickness of walls: rays and balls inside the part (geometric), or "
@@ -282,6 +300,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->required();
   add_chord(g, generate.chord_tolerance);
   add_unit(g, generate.unit);
+  add_repair(g, generate.repair, generate.wrap_spacing);
   add_mesher(g, generate.mesher);
   g->add_option("--seed", generate.seed, "Another seed gives another, equally good mesh [1]")
       ->option_text("N");
@@ -311,6 +330,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   add_chord(i, info.chord_tolerance);
   i->add_flag("--faces", info.faces, "List the faces: number, name, area and a point on them");
   add_unit(i, info.unit);
+  add_repair(i, info.repair, info.wrap_spacing);
   add_json(i, info.json);
 
   SampleCommand sample;

@@ -26,6 +26,8 @@ struct MeshCommand {
   bool progressive = false;
   std::optional<double> memory;
   std::optional<std::string> unit;
+  std::string repair = "auto";
+  std::optional<double> wrap_spacing;
   std::string mesher = "auto";
   std::optional<std::string> detector;
   std::string report;
@@ -51,6 +53,8 @@ struct AdaptCommand {
 struct GenerateCommand {
   std::string surface, output;
   std::string unit = "mm";
+  std::string repair = "auto";
+  std::optional<double> wrap_spacing;
   std::string mesher = "auto";
   std::optional<double> chord_tolerance;
   std::uint64_t seed = 1;
@@ -67,6 +71,8 @@ struct CheckCommand {
 struct InfoCommand {
   std::string part;
   std::string unit = "mm";
+  std::string repair = "auto";
+  std::optional<double> wrap_spacing;
   std::optional<double> chord_tolerance;
   bool faces = false;
   bool json = false;
@@ -100,6 +106,8 @@ std::optional<Command> parse(int argc, char** argv, int& status);
 
 /// mm per unit of --unit.
 double unit_factor(const std::string& unit);
+/// Of --repair.
+Repair repair_choice(const std::string& name);
 MesherChoice mesher_choice(const std::string& name);
 
 }  // namespace lamella::cli

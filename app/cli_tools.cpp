@@ -113,43 +113,6 @@ int check_mesh(const SimplexMesh<D>& mesh, MetricField<D> metric, const CheckCom
   return 0;
 }
 
-/// One line a face: what --size-face and sizing objects pick it by.
-void say_faces(const Part& part, Console& console) {
-  const ReferenceSurface<3>& s = part.surface;
-  struct Found {
-    double area = 0, largest = -1;
-    Vec<3> point = Vec<3>::Zero();
-    std::size_t triangles = 0;
-  };
-  std::vector<Found> faces(s.faces.size());
-  for (std::size_t f = 0; f < s.facets.size(); ++f) {
-    const std::array<Vec<3>, 3> p = {s.points[s.facets[f][0]], s.points[s.facets[f][1]],
-                                     s.points[s.facets[f][2]]};
-    const double area = 0.5 * facet_normal<3>(p).norm();
-    Found& face = faces[s.facet_face[f]];
-    face.area += area;
-    ++face.triangles;
-    if (area <= face.largest) continue;
-    face.largest = area;
-    face.point = (p[0] + p[1] + p[2]) / 3;
-  }
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const Found& face = faces[f];
-    const std::string& name = s.faces[f].name;
-    console.say("  face " + std::to_string(f) + (name.empty() ? "" : " \"" + name + "\"") + ": " +
-                short_number(face.area, 6) + " mm2, through (" + short_number(face.point[0], 5) +
-                ", " + short_number(face.point[1], 5) + ", " + short_number(face.point[2], 5) +
-                ")");
-    console.emit(dump({{"phase", "face"},
-                       {"body", part.name},
-                       {"id", f},
-                       {"name", name},
-                       {"area", face.area},
-                       {"triangles", face.triangles},
-                       {"point", {face.point[0], face.point[1], face.point[2]}}}));
-  }
-}
-
 /// "t-junction" and "tray" find "t_junction" and "ribbed_tray".
 std::string sample_called(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
@@ -172,55 +135,6 @@ int run_check(const CheckCommand& c, Console& console) {
   return std::visit(
       [&]<int D>(const SimplexMesh<D>& other) { return check_mesh<D>(other, {}, c, console); },
       *mesh);
-}
-
-int run_info(const InfoCommand& c, Console& console) {
-  LoadParams load;
-  load.chord_tolerance = c.chord_tolerance;
-  Study study;
-  study.inputs = {{c.part, unit_factor(c.unit)}};
-  Result<std::vector<Part>> parts = load_all({c.part}, study, load, console.progress());
-  if (!parts) return console.fail(parts.error());
-  console.say(c.part + ": " + std::to_string(parts->size()) +
-              (parts->size() == 1 ? " body" : " bodies"));
-  for (const Part& part : *parts) {
-    Vec<3> low = Vec<3>::Constant(1e300), high = -low;
-    for (const Vec<3>& x : part.surface.points) {
-      low = low.cwiseMin(x);
-      high = high.cwiseMax(x);
-    }
-    const Vec<3> size = high - low;
-    double area = 0;
-    for (const auto& f : part.surface.facets)
-      area += 0.5 * facet_normal<3>({part.surface.points[f[0]], part.surface.points[f[1]],
-                                     part.surface.points[f[2]]})
-                        .norm();
-    // Twice the volume over the area is the thickness of a thin sheet.
-    const double wall = area > 0 ? 2 * part.cad_volume / area : 0;
-    console.say("body \"" + part.name + "\"");
-    console.say("  size        " + short_number(size[0], 6) + " x " + short_number(size[1], 6) +
-                " x " + short_number(size[2], 6) + " mm");
-    console.say("  volume      " + short_number(part.cad_volume, 8) + " mm3, area " +
-                short_number(area, 8) + " mm2, mean wall about " + short_number(wall, 3) + " mm");
-    console.say("  surface     " + grouped(part.surface.facets.size()) + " triangles on " +
-                grouped(part.surface.faces.size()) + " faces, " +
-                grouped(part.surface.feature_edges.size()) + " feature edges, within " +
-                short_number(part.chord_error, 3) + " mm");
-    for (const std::string& note : part.notes) console.say("  note        " + note);
-    console.emit(dump({{"phase", "body"},
-                       {"name", part.name},
-                       {"size", {size[0], size[1], size[2]}},
-                       {"volume", part.cad_volume},
-                       {"area", area},
-                       {"mean_wall", wall},
-                       {"triangles", part.surface.facets.size()},
-                       {"faces", part.surface.faces.size()},
-                       {"feature_edges", part.surface.feature_edges.size()},
-                       {"chord_error", part.chord_error},
-                       {"notes", part.notes}}));
-    if (c.faces) say_faces(part, console);
-  }
-  return 0;
 }
 
 int run_sample(const SampleCommand& c, Console& console) {

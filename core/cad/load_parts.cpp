@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <numeric>
 
 #include "core/cad/occt_guard.h"
 #include "core/cad/step_reader.h"
-#include "core/cad/tessellate.h"
 #include "core/geometry/improve_triangles.h"
 #include "core/geometry/self_intersection.h"
 #include "core/geometry/soup.h"
+#include "core/geometry/wrap.h"
 #include "core/io/stl.h"
 
 namespace lamella {
@@ -21,28 +20,6 @@ std::string extension_of(const std::filesystem::path& file) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
-}
-
-Result<std::vector<Part>> load_step(const std::filesystem::path& file, const LoadParams& params,
-                                    const Progress& progress) {
-  std::vector<Part> parts;
-  Result<void> done = guarded(file.filename().string(), [&] {
-    return read_step(file, progress,
-                     [&](const TopoDS_Shape& solid, SolidInfo info, const Progress& portion) {
-                       Result<Part> part = tessellate(solid, std::move(info), params, portion);
-                       if (!part) {
-                         Error error = part.error();
-                         if (error.code != Code::cancelled) {
-                           error.message = file.filename().string() + ": " + error.message;
-                         }
-                         return Result<void>(error);
-                       }
-                       parts.push_back(*std::move(part));
-                       return Result<void>();
-                     });
-  });
-  if (!done) return done.error();
-  return parts;
 }
 
 /// Takes the needles out where that leaves the surface sound, and tells of facets that cross.
@@ -57,8 +34,9 @@ void improve(Part& part, const Progress& progress) {
   const SelfIntersections before = find_self_intersections(part.surface, progress);
   if (progress.cancelled()) return;
   if (before.pairs > 0) {
-    part.notes.push_back(std::to_string(before.pairs) +
-                         " pairs of facets cross each other: meshing may fail there.");
+    part.notes.push_back(counted(before.pairs, "pair") + " of facets cross" +
+                         (before.pairs == 1 ? "es" : "") + ", the first at " +
+                         place_text(before.place) + ": meshing may fail there.");
     return;
   }
   ImproveParams params;
@@ -86,66 +64,271 @@ std::size_t crossings_of(const std::vector<ReferenceSurface<3>>& bodies, const P
   return find_self_intersections(all, progress).pairs;
 }
 
-Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const LoadParams& params,
-                                   const Progress& progress) {
-  auto soup = read_stl(file, progress.portion(0, 0.4, "Reading STL"));
-  if (!soup) return soup.error();
-  for (auto& facet : *soup) {
-    for (Vec<3>& p : facet) p *= params.unit;
+double facets_area(const Triangles& t) {
+  double area = 0;
+  for (std::size_t f = 0; f < t.facets.size(); ++f)
+    area += 0.5 * facet_normal<3>(t.corners(f)).norm();
+  return area;
+}
+
+std::string percent(double share) { return length_text(100 * share) + " %"; }
+
+struct WrappedBodies {
+  std::vector<ReferenceSurface<3>> bodies;
+  double error = 0;  // mm, both ways
+};
+
+/// Wraps; once more on a grid of half the spacing where walls are lost.
+Result<WrappedBodies> wrap_bodies(const Triangles& triangles, const LoadParams& params,
+                                  const std::string& why, std::vector<std::string>& notes,
+                                  const Progress& progress) {
+  WrapParams how;
+  how.spacing = params.wrap_spacing.value_or(0);
+  Result<Wrapped> wrapped = wrap(triangles, how, progress.portion(0, 0.5));
+  if (!wrapped) return wrapped.error();
+  for (int finer = 0; finer < 1 && !params.wrap_spacing; ++finer) {
+    if (wrapped->from_file.distance < wrapped->spacing) break;
+    how.spacing = 0.5 * wrapped->spacing;
+    const double half = 0.25 * finer;
+    Result<Wrapped> again =
+        wrap(triangles, how, progress.portion(0.5 + half, 0.6 + half));
+    if (!again) return again.error();
+    if (again->spacing > 0.9 * wrapped->spacing) break;  // no memory for more
+    wrapped = std::move(again);
   }
-  std::vector<std::string> notes;
-  auto surfaces = surfaces_from_soup(*soup, {}, &notes, progress.portion(0.4, 1, "Closing"));
-  if (!surfaces) {
-    Error error = surfaces.error();
-    if (error.code != Code::cancelled) {
-      error.message = file.filename().string() + ": " + error.message;
+  const double error = std::max(wrapped->to_file.distance, wrapped->from_file.distance);
+  std::string text = why + "Wrapped: within " + length_text(error) + " mm of the file's surface (" +
+                     length_text(wrapped->to_file.distance) + " mm from it at most at " +
+                     place_text(wrapped->to_file.place) + ", which lies within " +
+                     length_text(wrapped->from_file.distance) + " mm of the wrap), on a grid of " +
+                     length_text(wrapped->spacing) + " mm.";
+  const double area = facets_area(wrapped->surface);
+  if (wrapped->bridged_area > 1e-4 * area)
+    text += " " + percent(wrapped->bridged_area / area) + " of the wrap close holes.";
+  if (wrapped->specks > 0)
+    text += " " + counted(wrapped->specks, "shell") + " smaller than two cells left out.";
+  notes.push_back(text);
+  SoupParams sound;
+  sound.repair = false;
+  auto bodies = surfaces_from_triangles(std::move(wrapped->surface), sound, nullptr,
+                                        progress.portion(0.9, 1));
+  if (!bodies) return bodies.error();
+  return WrappedBodies{*std::move(bodies), error};
+}
+
+Triangles triangles_of(const ReferenceSurface<3>& surface) {
+  return {surface.points, surface.facets};
+}
+
+/// One body made sound: as it is, or wrapped where it crosses itself. Several, when the wrap falls
+/// apart.
+Result<std::vector<Part>> finish(ReferenceSurface<3> surface, const LoadParams& params,
+                                 const Progress& progress) {
+  std::vector<Part> parts(1);
+  if (params.repair == Repair::automatic) {
+    const SelfIntersections crossing = find_self_intersections(surface, progress);
+    if (progress.cancelled()) return cancelled_error();
+    Triangles mended = triangles_of(surface);
+    if (crossing.pairs > 0 && mend_crossings(mended, 0.1 * diagonal_of(surface.points),
+                                             &parts[0].notes, progress)) {
+      SoupParams sound;
+      sound.repair = false;
+      auto bodies = surfaces_from_triangles(std::move(mended), sound, nullptr, progress);
+      if (!bodies) return bodies.error();
+      parts.resize(bodies->size());
+      for (std::size_t k = 0; k < parts.size(); ++k) parts[k].surface = std::move((*bodies)[k]);
+      surface = {};
+    } else if (crossing.pairs > 0) {
+      std::vector<std::string> notes;
+      Result<WrappedBodies> wrapped = wrap_bodies(
+          triangles_of(surface), params,
+          counted(crossing.pairs, "pair") + " of facets cross each other, the first at " +
+              place_text(crossing.place) + ". ",
+          notes, progress);
+      if (!wrapped) return wrapped.error();
+      parts.clear();
+      for (auto& body : wrapped->bodies) {
+        parts.emplace_back();
+        parts.back().chord_error = wrapped->error;
+        parts.back().surface = std::move(body);
+      }
+      parts[0].notes = std::move(notes);
+      surface = {};
     }
-    return error;
   }
-  char unit[64];
-  std::snprintf(unit, sizeof(unit), "An STL has no unit: one file unit was taken as %g mm.",
-                params.unit);
-  notes.push_back(unit);
-  const std::size_t crossings = surfaces->size() > 1 ? crossings_of(*surfaces, progress) : 0;
-  std::vector<Part> parts;
-  for (auto& surface : *surfaces) {
-    Part part;
-    part.name = file.stem().string();
-    if (surfaces->size() > 1) part.name += " " + std::to_string(parts.size() + 1);
-    part.cad_volume = enclosed_measure(surface);
-    part.surface = std::move(surface);
+  if (!surface.points.empty()) parts[0].surface = std::move(surface);
+  for (Part& part : parts) {
+    part.cad_volume = enclosed_measure(part.surface);
     improve(part, progress);
     if (progress.cancelled()) return cancelled_error();
-    parts.push_back(std::move(part));
   }
+  return parts;
+}
+
+/// Parts of triangles that lack connectivity or soundness.
+Result<std::vector<Part>> parts_of(Triangles triangles, const std::string& name,
+                                   const LoadParams& params, std::vector<std::string> notes,
+                                   const Progress& progress) {
+  std::vector<ReferenceSurface<3>> surfaces;
+  double error = 0;
+  std::string why;
+  bool wrapped = params.repair == Repair::wrap;
+  if (!wrapped) {
+    SoupParams soup;
+    soup.repair = params.repair == Repair::automatic;
+    std::vector<std::string> repairs;
+    auto bodies =
+        surfaces_from_triangles(triangles, soup, &repairs, progress.portion(0, 0.3));
+    if (bodies) {
+      surfaces = *std::move(bodies);
+      notes.insert(notes.begin(), repairs.begin(), repairs.end());
+    } else if (params.repair == Repair::none || bodies.error().code != Code::bad_input) {
+      return bodies.error();
+    } else {
+      wrapped = true;
+      why = "Small repairs did not do: " + bodies.error().message + ". ";
+    }
+  }
+  if (wrapped) {
+    auto bodies = wrap_bodies(triangles, params, why, notes, progress.portion(0.3, 0.8));
+    if (!bodies) {
+      Error failure = bodies.error();
+      if (failure.code == Code::bad_input && !why.empty()) failure.message = why + failure.message;
+      return failure;
+    }
+    surfaces = std::move(bodies->bodies);
+    error = bodies->error;
+  }
+  const std::size_t crossings = surfaces.size() > 1 ? crossings_of(surfaces, progress) : 0;
+  std::vector<Part> parts;
+  for (auto& surface : surfaces) {
+    Result<std::vector<Part>> finished =
+        finish(std::move(surface), params, progress.portion(0.8, 1));
+    if (!finished) return finished.error();
+    for (Part& part : *finished) {
+      part.chord_error = std::max(part.chord_error, error);
+      parts.push_back(std::move(part));
+    }
+  }
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    parts[k].name = name + (parts.size() > 1 ? " " + std::to_string(k + 1) : "");
   if (parts.size() > 1) {
     notes.push_back("The file holds " + std::to_string(parts.size()) + " separate bodies.");
     if (crossings > 0) {
       notes.push_back(
           "The bodies cross each other in " + std::to_string(crossings) +
-          " pairs of facets: each is meshed alone, so what they share is meshed twice.");
+          " pairs of facets: each is meshed alone, so what they share is meshed twice. A wrap "
+          "unites them.");
     }
   }
   parts[0].notes.insert(parts[0].notes.begin(), notes.begin(), notes.end());
   return parts;
 }
 
-}  // namespace
+Error about(const std::filesystem::path& file, Error error) {
+  if (error.code != Code::cancelled) error.message = file.filename().string() + ": " + error.message;
+  return error;
+}
 
-Result<std::vector<Part>> load_parts(const std::filesystem::path& file, const LoadParams& params,
-                                     const Progress& progress) {
+Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const LoadParams& params,
+                                   FileDiagnosis* diagnosis, const Progress& progress) {
+  auto soup = read_stl(file, progress.portion(0, 0.2, "Reading STL"));
+  if (!soup) return soup.error();
+  for (auto& facet : *soup) {
+    for (Vec<3>& p : facet) p *= params.unit;
+  }
+  Triangles triangles = merge_exact(*soup);
+  if (diagnosis) {
+    diagnosis->bodies = diagnose_bodies(triangles, {}, progress.portion(0.2, 0.4, "Diagnosing"));
+    diagnosis->unit_guess = guess_unit(diagonal_of(triangles.points) / params.unit);
+  }
+  if (progress.cancelled()) return cancelled_error();
+  char unit[160];
+  std::snprintf(unit, sizeof(unit), "An STL has no unit: one file unit was taken as %g mm%s",
+                params.unit,
+                params.unit == 1 && guess_unit(diagonal_of(triangles.points)) != "mm"
+                    ? ", which makes the part small; is it in another?"
+                    : ".");
+  auto parts = parts_of(std::move(triangles), file.stem().string(), params, {unit},
+                        progress.portion(0.4, 1, "Closing"));
+  if (!parts) return about(file, parts.error());
+  return parts;
+}
+
+Result<std::vector<Part>> load_step(const std::filesystem::path& file, const LoadParams& params,
+                                    FileDiagnosis* diagnosis, const Progress& progress) {
+  StepContent content;
+  Result<void> done = guarded(file.filename().string(), [&] {
+    return read_step(file, params, progress.portion(0, 0.9), content);
+  });
+  if (diagnosis) {
+    diagnosis->free_shells = content.free_shells;
+    diagnosis->free_faces = content.free_faces;
+  }
+  if (!done) return done.error();
+  std::vector<Part> parts;
+  const Progress rest = progress.portion(0.9, 1, "Closing");
+  for (StepBody& body : content.bodies) {
+    if (progress.cancelled()) return cancelled_error();
+    if (diagnosis) {
+      Diagnosis found = diagnose(body.rough.facets.empty() ? triangles_of(body.part.surface)
+                                                           : body.rough);
+      found.name = body.part.name;
+      found.exact_shape_valid = body.exact_shape_valid;
+      diagnosis->bodies.push_back(std::move(found));
+    }
+    if (body.refusal && params.repair == Repair::none) return about(file, *body.refusal);
+    if (!body.refusal && params.repair != Repair::wrap) {
+      parts.push_back(std::move(body.part));
+      continue;
+    }
+    std::vector<std::string> notes = body.part.notes;
+    if (body.refusal) notes.push_back(body.refusal->message + ".");
+    Triangles rough =
+        body.rough.facets.empty() ? triangles_of(body.part.surface) : std::move(body.rough);
+    auto made = parts_of(std::move(rough), body.part.name, params, std::move(notes), rest);
+    if (!made && body.refusal && made.error().code != Code::cancelled)
+      return about(file, *body.refusal);
+    if (!made) return about(file, made.error());
+    for (Part& part : *made) {
+      part.color = body.part.color;
+      parts.push_back(std::move(part));
+    }
+  }
+  return parts;
+}
+
+Result<std::vector<Part>> load(const std::filesystem::path& file, const LoadParams& params,
+                               FileDiagnosis* diagnosis, const Progress& progress) {
   if (params.chord_tolerance && !(*params.chord_tolerance > 0)) {
     return Error{Code::usage, "the chord tolerance must be positive", "Give a length in mm."};
+  }
+  if (params.wrap_spacing && !(*params.wrap_spacing > 0)) {
+    return Error{Code::usage, "the spacing of a wrap must be positive", "Give a length in mm."};
   }
   if (!(params.angle_tolerance > 0) || !(params.unit > 0)) {
     return Error{Code::usage, "the angle tolerance and the unit must be positive", ""};
   }
   const std::string extension = extension_of(file);
-  if (extension == ".stl") return load_stl(file, params, progress);
-  if (extension == ".step" || extension == ".stp") return load_step(file, params, progress);
+  if (extension == ".stl") return load_stl(file, params, diagnosis, progress);
+  if (extension == ".step" || extension == ".stp") return load_step(file, params, diagnosis, progress);
   return Error{Code::bad_input,
                file.filename().string() + ": '" + extension + "' is no format of parts",
                "Lamella reads STEP (.step, .stp) and STL (.stl)."};
+}
+
+}  // namespace
+
+Result<std::vector<Part>> load_parts(const std::filesystem::path& file, const LoadParams& params,
+                                     const Progress& progress) {
+  return load(file, params, nullptr, progress);
+}
+
+Inspection inspect_parts(const std::filesystem::path& file, const LoadParams& params,
+                         const Progress& progress) {
+  FileDiagnosis diagnosis;
+  Result<std::vector<Part>> parts = load(file, params, &diagnosis, progress);
+  return {std::move(diagnosis), std::move(parts)};
 }
 
 }  // namespace lamella

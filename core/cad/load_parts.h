@@ -5,20 +5,41 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/geometry/diagnosis.h"
 #include "core/geometry/surface.h"
 
 namespace lamella {
+
+/// How much of a broken surface may be changed. Every change is told in the notes of a part.
+enum class Repair {
+  none,       ///< nothing but the order of points and windings
+  automatic,  ///< small named repairs (core/geometry/repair.h), and a wrap where they do not do
+  wrap        ///< every body is wrapped (core/geometry/wrap.h)
+};
 
 struct LoadParams {
   std::optional<double> chord_tolerance{};  ///< mm; unset: 1e-3 of each solid's box diagonal
   double angle_tolerance = 0.35;            ///< radians
   double unit = 1;                          ///< mm per file unit, for files that have none (STL)
+  Repair repair = Repair::automatic;
+  std::optional<double> wrap_spacing{};  ///< mm between the grid planes of a wrap; unset: 1/160 of
+                                         ///< the diagonal, finer where walls would be lost
 };
 
-/// The bodies of a STEP (.step, .stp) or STL (.stl) file, one a solid, in mm.
+/// The bodies of a STEP (.step, .stp) or STL (.stl) file, one a solid, in mm. The file is not
+/// changed.
 /// Errors: io (missing, unreadable), bad_input (empty, not STEP/STL, no solid, open shell), each
 /// naming the file, the finding and what to try; cancelled.
 Result<std::vector<Part>> load_parts(const std::filesystem::path& file,
                                      const LoadParams& params = {}, const Progress& progress = {});
+
+/// What a file holds as it is, and its bodies or why there are none.
+struct Inspection {
+  FileDiagnosis diagnosis;
+  Result<std::vector<Part>> parts;
+};
+/// `load_parts` with a diagnosis before any repair, which a refused file gets too.
+Inspection inspect_parts(const std::filesystem::path& file, const LoadParams& params = {},
+                         const Progress& progress = {});
 
 }  // namespace lamella

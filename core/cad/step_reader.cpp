@@ -1,14 +1,26 @@
 #include "core/cad/step_reader.h"
 
+#include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_MakeSolid.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <ShapeFix_Shape.hxx>
+#include <ShapeFix_ShapeTolerance.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Shape.hxx>
+#include <TopoDS_Solid.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
@@ -19,16 +31,13 @@
 
 #include "core/base/atomic_file.h"
 #include "core/cad/occt_progress.h"
+#include "core/cad/tessellate.h"
 
 namespace lamella {
 namespace {
 
 Error bad(const std::filesystem::path& file, const std::string& finding, std::string hint) {
   return {Code::bad_input, file.filename().string() + ": " + finding, std::move(hint)};
-}
-
-std::string counted(std::size_t n, const std::string& what) {
-  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
 /// A reading setting of OCCT, put back at the end: they are global to the program.
@@ -113,6 +122,7 @@ struct Found {
 struct Loose {
   std::size_t shells = 0;
   std::size_t faces = 0;
+  std::vector<TopoDS_Shape> all;  // faces outside any solid
 };
 
 void collect(const XCAFPrs_DocumentNode& node, std::vector<Found>& found, Loose& loose) {
@@ -120,6 +130,8 @@ void collect(const XCAFPrs_DocumentNode& node, std::vector<Found>& found, Loose&
   if (shape.IsNull()) return;
   loose.shells += count(shape, TopAbs_SHELL, TopAbs_SOLID);
   loose.faces += count(shape, TopAbs_FACE, TopAbs_SHELL);
+  for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SOLID); it.More(); it.Next())
+    loose.all.push_back(it.Current());
   XCAFPrs_IndexedDataMapOfShapeStyle styles;
   XCAFPrs::CollectStyleSettings(node.RefLabel, node.Location, styles);
   std::string name = name_of(node.RefLabel);
@@ -175,10 +187,95 @@ Error no_solid(const std::filesystem::path& file, const std::string& text, const
   return bad(file, "no solid: the file holds no shape", "Export the part again.");
 }
 
+/// Sews faces into solids, with a tolerance no wider than needed; what does not close comes as it is.
+std::vector<Found> sew(const std::vector<TopoDS_Shape>& faces, const std::string& name,
+                       const Progress& progress) {
+  Bnd_Box box;
+  for (const TopoDS_Shape& face : faces) BRepBndLib::Add(face, box, Standard_False);
+  if (box.IsVoid()) return {};
+  const double size = std::sqrt(box.SquareExtent());
+  TopoDS_Shape sewn;
+  double tolerance = 0;
+  int open = 0;
+  for (const double share : {1e-6, 1e-5, 1e-4, 1e-3}) {
+    if (progress.cancelled()) return {};
+    tolerance = share * size;
+    BRepBuilderAPI_Sewing sewing(tolerance);
+    for (const TopoDS_Shape& face : faces) sewing.Add(face);
+    sewing.Perform();
+    sewn = sewing.SewedShape();
+    open = sewing.NbFreeEdges();
+    if (open == 0) break;
+  }
+  if (sewn.IsNull()) return {};
+  std::vector<Found> found;
+  std::string text = counted(faces.size(), "loose face") + " sewn within " + length_text(tolerance) +
+                     " mm";
+  for (TopExp_Explorer it(sewn, TopAbs_SHELL); it.More(); it.Next()) {
+    if (!BRep_Tool::IsClosed(it.Current())) continue;
+    BRepBuilderAPI_MakeSolid maker(TopoDS::Shell(it.Current()));
+    if (!maker.IsDone()) continue;
+    TopoDS_Solid solid = maker.Solid();
+    BRepLib::OrientClosedSolid(solid);
+    found.push_back({solid, {name, {-1, -1, -1}, {}, {}}});
+  }
+  if (found.empty()) {
+    found.push_back({sewn, {name, {-1, -1, -1}, {}, {}}});
+    text += "; " + counted(static_cast<std::size_t>(open), "edge") + " stayed open.";
+  } else {
+    text += " into " + counted(found.size(), "solid") + ".";
+  }
+  found[0].info.notes.push_back(text);
+  return found;
+}
+
+/// The solid after the kernel's own healing; null when that leaves none, or several.
+TopoDS_Shape healed(const TopoDS_Shape& solid) {
+  ShapeFix_Shape fix(solid);
+  fix.Perform();
+  const TopoDS_Shape shape = fix.Shape();
+  if (shape.IsNull()) return {};
+  TopoDS_Shape only;
+  for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
+    if (!only.IsNull()) return {};
+    only = it.Current();
+  }
+  return only;
+}
+
+Result<StepBody> body_of(Found found, const LoadParams& params, const Progress& progress) {
+  StepBody body;
+  body.exact_shape_valid = BRepCheck_Analyzer(found.solid).IsValid();
+  const SolidInfo info = found.info;
+  Result<Part> part = tessellate(found.solid, std::move(found.info), params, body.rough,
+                                 progress.portion(0, 0.7));
+  if (!part && part.error().code != Code::cancelled && params.repair == Repair::automatic) {
+    if (const TopoDS_Shape again = healed(found.solid); !again.IsNull()) {
+      Triangles rough;
+      SolidInfo told = info;
+      told.notes.push_back("Healed by the CAD kernel, as before " + part.error().message + ".");
+      Result<Part> second =
+          tessellate(again, std::move(told), params, rough, progress.portion(0.7, 1));
+      if (second || second.error().code == Code::cancelled) part = std::move(second);
+    }
+  }
+  if (part) {
+    body.part = *std::move(part);
+    body.rough = {};
+    return body;
+  }
+  if (part.error().code == Code::cancelled) return part.error();
+  body.refusal = part.error();
+  body.part.name = info.name;
+  body.part.color = info.color;
+  body.part.notes = info.notes;
+  return body;
+}
+
 }  // namespace
 
-Result<void> read_step(const std::filesystem::path& file, const Progress& progress,
-                       const SolidVisitor& visit) {
+Result<void> read_step(const std::filesystem::path& file, const LoadParams& params,
+                       const Progress& progress, StepContent& content) {
   Result<std::string> text = read_file(file);
   if (!text) return text.error();
   if (Result<void> envelope = check_envelope(file, *text); !envelope) return envelope.error();
@@ -211,9 +308,15 @@ Result<void> read_step(const std::filesystem::path& file, const Progress& progre
       collect(it.Current(), found, loose);
     }
   }
+  const bool had_solids = !found.empty();
+  content.free_shells = loose.shells;
+  content.free_faces = loose.faces;
+  if (found.empty() && params.repair != Repair::none)
+    found = sew(loose.all, file.stem().string(), progress);
+  if (progress.cancelled()) return cancelled_error();
   if (found.empty()) return no_solid(file, *text, loose);
   make_names_unique(found, file.stem().string());
-  if (loose.shells + loose.faces > 0) {
+  if (had_solids && loose.shells + loose.faces > 0) {
     found[0].info.notes.push_back(counted(loose.shells, "free shell") + " and " +
                                   counted(loose.faces, "loose face") +
                                   " beside the solids of the file were left out.");
@@ -223,9 +326,10 @@ Result<void> read_step(const std::filesystem::path& file, const Progress& progre
       return 0.4 + 0.6 * static_cast<double>(i) / static_cast<double>(found.size());
     };
     if (progress.cancelled()) return cancelled_error();
-    Result<void> done = visit(found[k].solid, std::move(found[k].info),
-                              progress.portion(at(k), at(k + 1), "Tessellating"));
-    if (!done) return done.error();
+    Result<StepBody> body = body_of(std::move(found[k]), params,
+                                    progress.portion(at(k), at(k + 1), "Tessellating"));
+    if (!body) return body.error();
+    content.bodies.push_back(*std::move(body));
   }
   return {};
 }

@@ -2,14 +2,14 @@
 
 #include <array>
 #include <filesystem>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
-
-class TopoDS_Shape;
+#include "core/cad/load_parts.h"
+#include "core/geometry/triangles.h"
 
 namespace lamella {
 
@@ -21,14 +21,25 @@ struct SolidInfo {
   std::vector<std::string> notes;
 };
 
-/// Called once a solid, in mm and placed as in the assembly.
-using SolidVisitor =
-    std::function<Result<void>(const TopoDS_Shape& solid, SolidInfo info, const Progress&)>;
+/// One solid, tessellated; or, where that has no sound surface, why and its triangles as they came.
+struct StepBody {
+  Part part;  ///< without a surface when refused
+  std::optional<Error> refusal;
+  Triangles rough;
+  bool exact_shape_valid = true;  ///< by the kernel's own check
+};
 
-/// Reads the leaves of the assembly of a STEP file. Free shells and faces are left out, with a
-/// note. Must run inside `guarded`. Errors: io; bad_input (empty, not STEP, truncated, no solid);
-/// cancelled; those of `visit`.
-Result<void> read_step(const std::filesystem::path& file, const Progress& progress,
-                       const SolidVisitor& visit);
+struct StepContent {
+  std::vector<StepBody> bodies;
+  std::size_t free_shells = 0;
+  std::size_t free_faces = 0;
+};
+
+/// Reads and tessellates the leaves of the assembly of a STEP file, in mm. Free shells and faces
+/// beside solids are left out, with a note; without any solid they are sewn, with a note, unless
+/// `params.repair` is none. Must run inside `guarded`. What was found before an error is in
+/// `content`. Errors: io; bad_input (empty, not STEP, truncated, no shape); cancelled.
+Result<void> read_step(const std::filesystem::path& file, const LoadParams& params,
+                       const Progress& progress, StepContent& content);
 
 }  // namespace lamella

@@ -64,6 +64,7 @@ class Joiner {
   }
 
   ReferenceSurface<3>& surface() { return surface_; }
+  std::size_t face_count() const { return static_cast<std::size_t>(faces_); }
   std::size_t missing_faces() const { return missing_; }
   std::size_t torn_edges() const { return torn_; }
   double deviation() const { return deviation_; }
@@ -348,7 +349,7 @@ double diagonal(const TopoDS_Shape& shape) {
 }  // namespace
 
 Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadParams& params,
-                        const Progress& progress) {
+                        Triangles& rough, const Progress& progress) {
   Part part;
   part.name = info.name;
   part.color = info.color;
@@ -359,6 +360,7 @@ Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadPar
 
   const double asked = params.chord_tolerance.value_or(1e-3 * diagonal(solid));
   const double chord = tessellation_share * asked;
+  rough = {};
   std::string problem;
   for (const Attempt& attempt : kAttempts) {
     IMeshTools_Parameters mesh;
@@ -387,15 +389,20 @@ Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadPar
     }
     if (problem.empty()) problem = here;
     if (!here.empty()) {
+      if (rough.facets.empty()) rough = {joined.surface().points, joined.surface().facets};
       // Finer triangles of a large model that crosses itself take minutes and rarely help.
       if (joined.surface().facets.size() > kMaxRetryFacets) break;
       continue;
     }
 
+    rough = {};
     part.surface = std::move(joined.surface());
     drop_unused_points(part.surface);
     const double moved = improve(part.surface, asked, progress);
     if (progress.cancelled()) return cancelled_error();
+    // Healing may have changed the faces.
+    if (info.face_colors.size() != joined.face_count())
+      info.face_colors.assign(joined.face_count(), {-1, -1, -1});
     for (const auto& color : info.face_colors) part.surface.faces.push_back({"", color});
     part.chord_error = std::max(mesh.Deflection, joined.deviation()) + moved;
     if (attempt.finer < 1) {

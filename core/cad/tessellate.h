@@ -13,8 +13,9 @@ namespace lamella {
 /// SurfaceFace a CAD face, feature edges where faces meet at more than 0.35 radians, corners where
 /// features end, branch or kink. Retries finer when the triangles do not close or cross each other.
 /// Must run inside `guarded`.
-/// Errors: bad_input (open, not manifold, self-intersecting, no volume); cancelled.
+/// Errors: bad_input (open, not manifold, self-intersecting, no volume), `rough` then getting the
+/// triangles as they came; cancelled.
 Result<Part> tessellate(const TopoDS_Shape& solid, SolidInfo info, const LoadParams& params,
-                        const Progress& progress);
+                        Triangles& rough, const Progress& progress);
 
 }  // namespace lamella

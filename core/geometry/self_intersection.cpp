@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/base/parallel.h"
+
 namespace lamella {
 namespace {
 
@@ -78,11 +80,12 @@ bool crosses(const Vec<3>& p, const Vec<3>& q, const Corners& t, double noise) {
 
 class Judge {
  public:
-  explicit Judge(const ReferenceSurface<3>& surface) : surface_(surface) {}
+  Judge(const std::vector<Vec<3>>& points, const std::vector<std::array<std::int32_t, 3>>& facets)
+      : points_(points), facets_(facets) {}
 
   bool intersect(std::int32_t f, std::int32_t g) const {
-    const auto& a = surface_.facets[f];
-    const auto& b = surface_.facets[g];
+    const auto& a = facets_[f];
+    const auto& b = facets_[g];
     int common = 0;
     int last_a = 0;
     int last_b = 0;
@@ -117,7 +120,7 @@ class Judge {
 
  private:
   Corners corners(const std::array<std::int32_t, 3>& f) const {
-    return {surface_.points[f[0]], surface_.points[f[1]], surface_.points[f[2]]};
+    return {points_[f[0]], points_[f[1]], points_[f[2]]};
   }
   /// Two facets at one edge with opposite normals lie on each other.
   static bool folded(const Corners& p, const Corners& q) {
@@ -126,44 +129,83 @@ class Judge {
     return n.dot(m) < 0 && n.cross(m).norm() < 1e-6;
   }
 
-  const ReferenceSurface<3>& surface_;
+  const std::vector<Vec<3>>& points_;
+  const std::vector<std::array<std::int32_t, 3>>& facets_;
 };
+
+std::vector<Box3> boxes_of(const std::vector<Vec<3>>& points,
+                           const std::vector<std::array<std::int32_t, 3>>& facets) {
+  std::vector<Box3> boxes(facets.size());
+  for (std::size_t f = 0; f < boxes.size(); ++f)
+    for (const std::int32_t v : facets[f]) boxes[f].add({points[v], points[v]});
+  return boxes;
+}
+
+/// Calls found(g) for every facet g > f that crosses f.
+template <class Found>
+void partners(const Tree& tree, const Judge& judge, std::int32_t f,
+              std::vector<std::int32_t>& stack, Found&& found) {
+  const Box3& box = tree.boxes[f];
+  stack.assign(1, 0);
+  while (!stack.empty()) {
+    const std::int32_t n = stack.back();
+    stack.pop_back();
+    const Tree::Node& node = tree.nodes[n];
+    if (!node.box.meets(box)) continue;
+    if (node.second > 0) {
+      stack.push_back(node.second);
+      stack.push_back(n + 1);
+      continue;
+    }
+    for (std::int32_t i = node.begin; i < node.end; ++i) {
+      const std::int32_t g = tree.items[i];
+      if (g > f && tree.boxes[g].meets(box) && judge.intersect(f, g)) found(g);
+    }
+  }
+}
 
 }  // namespace
 
 SelfIntersections find_self_intersections(const ReferenceSurface<3>& surface,
                                           const Progress& progress) {
-  std::vector<Box3> boxes(surface.facets.size());
-  for (std::size_t f = 0; f < boxes.size(); ++f) {
-    for (const std::int32_t v : surface.facets[f]) {
-      boxes[f].add({surface.points[v], surface.points[v]});
-    }
-  }
+  const std::vector<Box3> boxes = boxes_of(surface.points, surface.facets);
   const Tree tree(boxes);
-  const Judge judge(surface);
+  const Judge judge(surface.points, surface.facets);
   SelfIntersections found;
   std::vector<std::int32_t> stack;
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(boxes.size()); ++f) {
     if (f % 1024 == 0 && progress.cancelled()) break;
-    stack.assign(1, 0);
-    while (!stack.empty()) {
-      const std::int32_t n = stack.back();
-      stack.pop_back();
-      const Tree::Node& node = tree.nodes[n];
-      if (!node.box.meets(boxes[f])) continue;
-      if (node.second > 0) {
-        stack.push_back(node.second);
-        stack.push_back(n + 1);
-        continue;
-      }
-      for (std::int32_t i = node.begin; i < node.end; ++i) {
-        const std::int32_t g = tree.items[i];
-        if (g <= f || !boxes[g].meets(boxes[f]) || !judge.intersect(f, g)) continue;
-        if (found.pairs++ == 0) found.place = surface.points[surface.facets[f][0]];
-      }
-    }
+    partners(tree, judge, f, stack, [&](std::int32_t) {
+      if (found.pairs++ == 0) found.place = surface.points[surface.facets[f][0]];
+    });
   }
   return found;
+}
+
+std::vector<std::array<std::int32_t, 2>> self_intersecting_pairs(
+    const std::vector<Vec<3>>& points, const std::vector<std::array<std::int32_t, 3>>& facets,
+    const Progress& progress) {
+  const std::vector<Box3> boxes = boxes_of(points, facets);
+  const Tree tree(boxes);
+  const Judge judge(points, facets);
+  constexpr std::size_t kBlock = 256;
+  std::vector<std::vector<std::array<std::int32_t, 2>>> blocks((facets.size() + kBlock - 1) /
+                                                               kBlock);
+  parallel_each(
+      blocks.size(), 0, progress,
+      [&](std::size_t b) {
+        std::vector<std::int32_t> stack;
+        for (std::size_t i = b * kBlock; i < std::min(facets.size(), (b + 1) * kBlock); ++i) {
+          const auto f = static_cast<std::int32_t>(i);
+          const std::size_t first = blocks[b].size();
+          partners(tree, judge, f, stack, [&](std::int32_t g) { blocks[b].push_back({f, g}); });
+          std::sort(blocks[b].begin() + static_cast<std::ptrdiff_t>(first), blocks[b].end());
+        }
+      },
+      1);
+  std::vector<std::array<std::int32_t, 2>> all;
+  for (const auto& block : blocks) all.insert(all.end(), block.begin(), block.end());
+  return all;
 }
 
 }  // namespace lamella

@@ -18,4 +18,9 @@ struct SelfIntersections {
 SelfIntersections find_self_intersections(const ReferenceSurface<3>& surface,
                                           const Progress& progress = {});
 
+/// The pairs themselves, in the order of their facets; searched on all cores.
+std::vector<std::array<std::int32_t, 2>> self_intersecting_pairs(
+    const std::vector<Vec<3>>& points, const std::vector<std::array<std::int32_t, 3>>& facets,
+    const Progress& progress = {});
+
 }  // namespace lamella

@@ -7,29 +7,12 @@
 #include <numeric>
 #include <optional>
 
-#include "core/geometry/edge_table.h"
-
 namespace lamella {
 namespace {
 
+constexpr double kTouchGap = 1e-5;  // of the box diagonal, between sides of a body that touch
+
 using Facet = std::array<std::int32_t, 3>;
-using Notes = std::vector<std::string>;
-
-struct Triangles {
-  std::vector<Vec<3>> points;
-  std::vector<Facet> facets;
-};
-
-std::string place(const Vec<3>& p) {
-  char text[96];
-  std::snprintf(text, sizeof(text), "(%.6g, %.6g, %.6g)", p[0], p[1], p[2]);
-  return text;
-}
-
-/// "1 edge", "4 edges"
-std::string counted(std::size_t n, const std::string& what) {
-  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
-}
 
 void note(Notes* notes, std::string text) {
   if (notes) notes->push_back(std::move(text));
@@ -39,283 +22,7 @@ Error bad(std::string finding, std::string hint) {
   return {Code::bad_input, std::move(finding), std::move(hint)};
 }
 
-bool has_repeated_vertex(const Facet& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; }
-
-// --------------------------------------------------------------------------- connectivity
-
-/// Equal coordinates become one vertex; vertices are numbered in the order of the soup.
-Triangles merge_exact(const std::vector<std::array<Vec<3>, 3>>& soup) {
-  const std::size_t n = 3 * soup.size();
-  const auto point = [&](std::size_t i) -> const Vec<3>& { return soup[i / 3][i % 3]; };
-  std::vector<std::uint32_t> order(n);
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-    const Vec<3>& p = point(i);
-    const Vec<3>& q = point(j);
-    for (int k = 0; k < 3; ++k) {
-      if (p[k] != q[k]) return p[k] < q[k];
-    }
-    return i < j;
-  });
-  std::vector<std::uint32_t> first(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const bool same = k > 0 && point(order[k]) == point(order[k - 1]);
-    first[order[k]] = same ? first[order[k - 1]] : order[k];
-  }
-  Triangles t;
-  t.facets.resize(soup.size());
-  std::vector<std::int32_t> id(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (first[i] == i) {
-      id[i] = static_cast<std::int32_t>(t.points.size());
-      t.points.push_back(point(i));
-    }
-    t.facets[i / 3][i % 3] = id[first[i]];
-  }
-  return t;
-}
-
-std::size_t drop_degenerate(Triangles& t) { return std::erase_if(t.facets, has_repeated_vertex); }
-
-/// Facets on the same three vertices: copies of the same winding leave one, opposite pairs enclose
-/// nothing and leave none. Returns how many went.
-std::size_t drop_duplicates(Triangles& t) {
-  struct Key {
-    Facet sorted;
-    int sign;
-    std::size_t facet;
-  };
-  std::vector<Key> keys;
-  keys.reserve(t.facets.size());
-  for (std::size_t f = 0; f < t.facets.size(); ++f) {
-    Facet s = t.facets[f];
-    std::sort(s.begin(), s.end());
-    const int at = static_cast<int>(std::find(t.facets[f].begin(), t.facets[f].end(), s[0]) -
-                                    t.facets[f].begin());
-    keys.push_back({s, t.facets[f][(at + 1) % 3] == s[1] ? 1 : -1, f});
-  }
-  std::sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) {
-    return x.sorted != y.sorted ? x.sorted < y.sorted : x.facet < y.facet;
-  });
-  std::vector<char> keep(t.facets.size(), 1);
-  for (std::size_t i = 0; i < keys.size();) {
-    std::size_t j = i;
-    int net = 0;
-    for (; j < keys.size() && keys[j].sorted == keys[i].sorted; ++j) net += keys[j].sign;
-    bool taken = false;
-    for (std::size_t k = i; k < j; ++k) {
-      const bool chosen = !taken && net * keys[k].sign > 0;
-      taken = taken || chosen;
-      keep[keys[k].facet] = chosen ? 1 : 0;
-    }
-    i = j;
-  }
-  std::size_t f = 0;
-  return std::erase_if(t.facets, [&](const Facet&) { return !keep[f++]; });
-}
-
-struct Defects {
-  std::size_t open = 0;          // edges of one facet
-  std::size_t non_manifold = 0;  // edges of more than two
-  Vec<3> open_at = Vec<3>::Zero();
-  Vec<3> non_manifold_at = Vec<3>::Zero();
-};
-
-Defects find_defects(const Triangles& t) {
-  Defects d;
-  for_each_edge(edge_uses(t.facets), [&](std::span<const EdgeUse> uses) {
-    if (uses.size() == 2) return;
-    const Vec<3> middle = 0.5 * (t.points[uses[0].a] + t.points[uses[0].b]);
-    if (uses.size() == 1) {
-      if (d.open++ == 0) d.open_at = middle;
-    } else if (d.non_manifold++ == 0) {
-      d.non_manifold_at = middle;
-    }
-  });
-  return d;
-}
-
-// --------------------------------------------------------------------------------- cracks
-
-struct NearPair {
-  double distance2;
-  std::int32_t i, j;
-};
-
-/// Pairs of `vertices` nearer than `reach`, nearest first.
-std::vector<NearPair> near_pairs(const Triangles& t, const std::vector<std::int32_t>& vertices,
-                                 double reach) {
-  using Cell = std::array<std::int64_t, 3>;
-  std::vector<std::pair<Cell, std::int32_t>> cells;
-  cells.reserve(vertices.size());
-  for (const std::int32_t v : vertices) {
-    Cell c;
-    for (int k = 0; k < 3; ++k) {
-      c[k] = static_cast<std::int64_t>(std::floor(t.points[v][k] / reach));
-    }
-    cells.emplace_back(c, v);
-  }
-  std::sort(cells.begin(), cells.end());
-  std::vector<NearPair> pairs;
-  for (const auto& [cell, v] : cells) {
-    for (int n = 0; n < 27; ++n) {
-      const Cell next{cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1};
-      auto it = std::lower_bound(cells.begin(), cells.end(), std::pair(next, v + 1));
-      for (; it != cells.end() && it->first == next; ++it) {
-        const double d2 = (t.points[v] - t.points[it->second]).squaredNorm();
-        if (d2 <= reach * reach) pairs.push_back({d2, v, it->second});
-      }
-    }
-  }
-  std::sort(pairs.begin(), pairs.end(), [](const NearPair& x, const NearPair& y) {
-    if (x.distance2 != y.distance2) return x.distance2 < y.distance2;
-    return x.i != y.i ? x.i < y.i : x.j < y.j;
-  });
-  return pairs;
-}
-
-/// Merges vertices of open edges nearer than `reach`; two ends of one edge only with `collapse`.
-void weld(Triangles& t, double reach, bool collapse) {
-  const std::vector<EdgeUse> uses = edge_uses(t.facets);
-  std::vector<std::int32_t> vertices;
-  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
-    if (edge.size() == 1) vertices.insert(vertices.end(), {edge[0].a, edge[0].b});
-  });
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-
-  std::vector<std::int32_t> parent(t.points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  const auto joined = [&](std::int32_t i, std::int32_t j) {
-    const EdgeUse edge{std::min(i, j), std::max(i, j), 0, true};
-    const auto it = std::lower_bound(
-        uses.begin(), uses.end(), edge,
-        [](const EdgeUse& x, const EdgeUse& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
-    return it != uses.end() && it->same_edge(edge);
-  };
-  for (const NearPair& pair : near_pairs(t, vertices, reach)) {
-    const std::int32_t i = root(pair.i);
-    const std::int32_t j = root(pair.j);
-    if (i == j || (!collapse && joined(pair.i, pair.j))) continue;
-    // A chain of near vertices must not walk farther than the tolerance.
-    if ((t.points[i] - t.points[j]).norm() > reach) continue;
-    parent[std::max(i, j)] = std::min(i, j);
-  }
-  for (Facet& f : t.facets) {
-    for (std::int32_t& v : f) v = root(v);
-  }
-  drop_degenerate(t);
-}
-
-/// Widens the weld by half decades until nothing is open: near vertices elsewhere stay apart.
-void close_cracks(Triangles& t, double size, double tolerance, Notes* notes) {
-  const Defects before = find_defects(t);
-  if (before.open == 0 || tolerance <= 0) return;
-  for (const bool collapse : {false, true}) {
-    double reach = std::min(1e-8, tolerance);
-    for (bool last = false; !last; reach *= std::sqrt(10.0)) {
-      last = reach >= tolerance * (1 - 1e-9);
-      Triangles trial = t;
-      weld(trial, std::min(reach, tolerance) * size, collapse);
-      drop_duplicates(trial);
-      const Defects now = find_defects(trial);
-      if (now.non_manifold > before.non_manifold || trial.facets.empty()) break;
-      t = std::move(trial);
-      if (now.open == 0) {
-        char text[64];
-        std::snprintf(text, sizeof(text), "%.2g", std::min(reach, tolerance) * size);
-        note(notes, "Cracks along " + counted(before.open, "open edge") +
-                        " were closed by welding vertices nearer than " + text + " mm.");
-        return;
-      }
-    }
-  }
-}
-
 // ---------------------------------------------------------------------- shells and winding
-
-struct Shells {
-  std::vector<std::int32_t> of_facet;
-  std::int32_t count = 0;
-};
-
-/// Floods over the edges: neighbors across an edge run through it in opposite directions.
-Result<Shells> orient(Triangles& t, Notes* notes) {
-  std::vector<std::array<std::int32_t, 3>> across(t.facets.size());
-  std::vector<std::array<char, 3>> agrees(t.facets.size());
-  const std::vector<EdgeUse> uses = edge_uses(t.facets);
-  const auto side = [&](std::int32_t f, const EdgeUse& use) {
-    for (int k = 0; k < 2; ++k) {
-      const std::int32_t i = t.facets[f][k];
-      const std::int32_t j = t.facets[f][k + 1];
-      if (std::min(i, j) == use.a && std::max(i, j) == use.b) return k;
-    }
-    return 2;
-  };
-  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
-    const bool good = edge[0].forward != edge[1].forward;
-    for (int s = 0; s < 2; ++s) {
-      const int k = side(edge[s].facet, edge[s]);
-      across[edge[s].facet][k] = edge[1 - s].facet;
-      agrees[edge[s].facet][k] = good;
-    }
-  });
-
-  Shells shells;
-  shells.of_facet.assign(t.facets.size(), -1);
-  std::vector<char> turned(t.facets.size(), 0);
-  std::size_t flipped = 0;
-  std::vector<std::int32_t> shell;
-  for (std::size_t seed = 0; seed < t.facets.size(); ++seed) {
-    if (shells.of_facet[seed] >= 0) continue;
-    shell.assign(1, static_cast<std::int32_t>(seed));
-    shells.of_facet[seed] = shells.count;
-    std::size_t minority = 0;
-    for (std::size_t k = 0; k < shell.size(); ++k) {
-      const std::int32_t f = shell[k];
-      minority += turned[f] ? 1 : 0;
-      for (int s = 0; s < 3; ++s) {
-        const std::int32_t g = across[f][s];
-        const char turn = agrees[f][s] ? turned[f] : !turned[f];
-        if (shells.of_facet[g] < 0) {
-          shells.of_facet[g] = shells.count;
-          turned[g] = turn;
-          shell.push_back(g);
-        } else if (turned[g] != turn) {
-          return bad("the surface is one-sided (like a Moebius strip) near " +
-                         place(t.points[t.facets[g][0]]),
-                     "Such a surface encloses no volume; repair it in the CAD program.");
-        }
-      }
-    }
-    // The larger side keeps its winding, so that an inner void keeps its own direction.
-    if (2 * minority > shell.size()) {
-      for (const std::int32_t f : shell) turned[f] = !turned[f];
-      minority = shell.size() - minority;
-    }
-    flipped += minority;
-    ++shells.count;
-  }
-  for (std::size_t f = 0; f < t.facets.size(); ++f) {
-    if (turned[f]) std::swap(t.facets[f][1], t.facets[f][2]);
-  }
-  if (flipped > 0) note(notes, counted(flipped, "facet") + " wound against the others: turned.");
-  return shells;
-}
-
-/// Solid angle of a facet seen from x (van Oosterom and Strackee 1983).
-double solid_angle(const Triangles& t, const Facet& f, const Vec<3>& x) {
-  const Vec<3> a = t.points[f[0]] - x;
-  const Vec<3> b = t.points[f[1]] - x;
-  const Vec<3> c = t.points[f[2]] - x;
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2 * std::atan2(a.dot(b.cross(c)),
-                        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-}
 
 double six_volumes(const Triangles& t, const Facet& f, const Vec<3>& origin) {
   return (t.points[f[0]] - origin).dot((t.points[f[1]] - origin).cross(t.points[f[2]] - origin));
@@ -358,7 +65,7 @@ bool contains(const Triangles& t, const Shell& out, const Shell& in) {
     const Facet& f = t.facets[in.facets[k]];
     const Vec<3> x = (t.points[f[0]] + t.points[f[1]] + t.points[f[2]]) / 3;
     winding = 0;
-    for (const std::int32_t g : out.facets) winding += solid_angle(t, t.facets[g], x);
+    for (const std::int32_t g : out.facets) winding += solid_angle(t.corners(g), x);
     winding = std::abs(winding) / (4 * std::numbers::pi);
     if (std::abs(winding - 0.5) > 0.25) break;
   }
@@ -427,55 +134,72 @@ ReferenceSurface<3> extract(const Triangles& t, const std::vector<const Shell*>&
   return surface;
 }
 
+Result<void> repair(Triangles& t, double size, const SoupParams& params, Notes* notes,
+                    const Progress& progress) {
+  const std::size_t duplicate = drop_duplicates(t);
+  if (duplicate > 0) note(notes, counted(duplicate, "duplicate facet") + " dropped.");
+  const double tolerance = params.weld_tolerance * size;
+  if (progress.cancelled()) return cancelled_error();
+  weld_cracks(t, tolerance, notes);
+  if (find_edge_defects(t).open > 0 && split_at_t_vertices(t, tolerance, notes) > 0) {
+    drop_duplicates(t);
+    weld_cracks(t, tolerance, notes);
+  }
+  if (progress.cancelled()) return cancelled_error();
+  const EdgeDefects before = find_edge_defects(t);
+  if (before.open + before.non_manifold == 0) return {};
+  if (Result<Shells> oriented = orient(t, notes); !oriented) return oriented.error();
+  if (before.non_manifold > 0) split_fans(t, kTouchGap * size, notes);
+  if (before.open == 0) return {};
+  if (Result<void> filled = fill_holes(t, params.hole_limit * size, notes); !filled)
+    return filled.error();
+  drop_duplicates(t);
+  return {};
+}
+
 struct Prepared {
   Triangles triangles;
   std::vector<Shell> shells;
 };
 
-Result<Prepared> prepare(const std::vector<std::array<Vec<3>, 3>>& soup, const SoupParams& params,
-                         Notes* notes, const Progress& progress) {
-  if (soup.empty()) return bad("the surface has no facet", "Export the part again.");
-  Vec<3> low = soup[0][0];
-  Vec<3> high = low;
-  for (const auto& facet : soup) {
-    for (const Vec<3>& p : facet) {
-      if (!p.allFinite()) {
-        return bad("a coordinate is not a finite number", "The file is damaged; export it again.");
-      }
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
+Result<Prepared> prepare(Triangles triangles, const SoupParams& params, Notes* notes,
+                         const Progress& progress) {
+  if (triangles.facets.empty()) return bad("the surface has no facet", "Export the part again.");
+  for (const Vec<3>& p : triangles.points) {
+    if (!p.allFinite()) {
+      return bad("a coordinate is not a finite number", "The file is damaged; export it again.");
     }
   }
-  const double size = (high - low).norm();
+  const double size = diagonal_of(triangles.points);
   if (size == 0) return bad("all vertices are the same point", "Export the part again.");
 
   Prepared out;
   Triangles& t = out.triangles;
-  t = merge_exact(soup);
+  t = std::move(triangles);
   progress.report(0.2);
   const std::size_t degenerate = drop_degenerate(t);
   if (degenerate > 0) note(notes, counted(degenerate, "degenerate facet") + " dropped.");
-  const std::size_t duplicate = drop_duplicates(t);
-  if (duplicate > 0) note(notes, counted(duplicate, "duplicate facet") + " dropped.");
-  if (progress.cancelled()) return cancelled_error();
-  close_cracks(t, size, params.weld_tolerance, notes);
+  if (params.repair) {
+    if (Result<void> repaired = repair(t, size, params, notes, progress); !repaired)
+      return repaired.error();
+  }
   progress.report(0.5);
   if (progress.cancelled()) return cancelled_error();
   if (t.facets.empty()) return bad("the surface encloses no volume", "Export the part again.");
 
-  const Defects defects = find_defects(t);
+  const EdgeDefects defects = find_edge_defects(t);
   if (defects.open > 0) {
     return bad("the surface is not closed: " + counted(defects.open, "open edge") +
-                   ", the first at " + place(defects.open_at) +
+                   ", the first at " + place_text(defects.open_at) +
                    (defects.non_manifold > 0
                         ? ", and " + counted(defects.non_manifold, "non-manifold edge")
                         : ""),
-               "Close the hole in the CAD program, or repair the STL with a mesh repair program.");
+               "Close the hole in the CAD program, or let the surface be repaired.");
   }
   if (defects.non_manifold > 0) {
     return bad("the surface is not manifold: more than two facets meet at " +
                    counted(defects.non_manifold, "edge") + ", the first at " +
-                   place(defects.non_manifold_at),
+                   place_text(defects.non_manifold_at),
                "Bodies that touch or overlap share these edges: unite them in the CAD program or "
                "export them one by one.");
   }
@@ -491,10 +215,10 @@ Result<Prepared> prepare(const std::vector<std::array<Vec<3>, 3>>& soup, const S
 
 }  // namespace
 
-Result<ReferenceSurface<3>> surface_from_soup(const std::vector<std::array<Vec<3>, 3>>& soup,
+Result<ReferenceSurface<3>> surface_from_soup(const TriangleSoup& soup,
                                               const SoupParams& params, Notes* notes,
                                               const Progress& progress) {
-  Result<Prepared> prepared = prepare(soup, params, notes, progress);
+  Result<Prepared> prepared = prepare(merge_exact(soup), params, notes, progress);
   if (!prepared) return prepared.error();
   std::vector<const Shell*> all;
   for (const Shell& s : prepared->shells) all.push_back(&s);
@@ -504,10 +228,17 @@ Result<ReferenceSurface<3>> surface_from_soup(const std::vector<std::array<Vec<3
   return surface;
 }
 
-Result<std::vector<ReferenceSurface<3>>> surfaces_from_soup(
-    const std::vector<std::array<Vec<3>, 3>>& soup, const SoupParams& params, Notes* notes,
-    const Progress& progress) {
-  Result<Prepared> prepared = prepare(soup, params, notes, progress);
+Result<std::vector<ReferenceSurface<3>>> surfaces_from_soup(const TriangleSoup& soup,
+                                                            const SoupParams& params, Notes* notes,
+                                                            const Progress& progress) {
+  return surfaces_from_triangles(merge_exact(soup), params, notes, progress);
+}
+
+Result<std::vector<ReferenceSurface<3>>> surfaces_from_triangles(Triangles triangles,
+                                                                 const SoupParams& params,
+                                                                 Notes* notes,
+                                                                 const Progress& progress) {
+  Result<Prepared> prepared = prepare(std::move(triangles), params, notes, progress);
   if (!prepared) return prepared.error();
   const std::vector<Shell>& shells = prepared->shells;
   std::vector<std::pair<double, std::vector<const Shell*>>> bodies;
@@ -526,7 +257,7 @@ Result<std::vector<ReferenceSurface<3>>> surfaces_from_soup(
         });
     const auto found = body_of.find(static_cast<std::size_t>(owner));
     if (found == body_of.end()) {
-      return bad("the shells of the surface cross each other near " + place(s.low),
+      return bad("the shells of the surface cross each other near " + place_text(s.low),
                  "Unite the bodies in the CAD program.");
     }
     bodies[found->second].second.push_back(&s);

@@ -142,14 +142,13 @@ TEST_F(Cli, BadInputsAreStatus3WithOneSentenceAndLeaveNothing) {
   write("garbage.stl", "this is no part at all\n");
   const std::string box = box_stl(10, 10, 1);
   write("truncated.stl", box.substr(0, box.size() / 2));
-  write("open.stl", box.substr(0, box.rfind("facet normal")) + "endsolid box\n");
   write("nothing.stl", "solid nothing\nendsolid nothing\n");
   write("empty.json", "");
   write("lost.json", R"({"schema": 1, "inputs": ["nowhere.step"]})");
   const Names before = folder.names();
   for (const std::string name :
        {"missing.step", "missing.stl", "empty.step", "empty.stl", "garbage.step", "garbage.stl",
-        "truncated.stl", "open.stl", "nothing.stl", "empty.json", "lost.json", "missing.json"}) {
+        "truncated.stl", "nothing.stl", "empty.json", "lost.json", "missing.json"}) {
     EXPECT_EQ(run("mesh " + name + " -o out.msh"), 3) << name << ": " << err;
     const std::string named = name == "lost.json" ? "nowhere.step" : name;
     EXPECT_NE(err.find(named), std::string::npos) << err;
@@ -232,10 +231,24 @@ TEST_F(Cli, DetectorAndSeveralThicknessesAreTakenAndWrittenDown) {
   EXPECT_EQ(study()["options"]["progressive"], true);
 }
 
+TEST_F(Cli, AnOpenBoxIsDiagnosedAndRepairedOnlyIfAllowed) {
+  const std::string box = box_stl(10, 10, 1);
+  write("open.stl", box.substr(0, box.rfind("facet normal")) + "endsolid box\n");
+  ASSERT_EQ(run("info --json --repair none open.stl"), 3) << err;
+  EXPECT_EQ(lines().at(0)["bodies"][0]["open_edges"]["count"], 3);
+  EXPECT_EQ(lines().at(0)["bodies"][0]["open_edges"]["places"].size(), 3);
+  EXPECT_EQ(lines().at(0)["bodies"][0]["sound"], false);
+  EXPECT_NE(err.find("3 open edges"), std::string::npos) << err;
+  ASSERT_EQ(run("info --json --wrap-spacing 0.2 open.stl"), 0) << err;
+  EXPECT_EQ(lines().at(1)["phase"], "body");
+  EXPECT_NE(lines().at(1)["notes"].dump().find("Wrapped: within"), std::string::npos);
+}
+
 TEST_F(Cli, APlateGetsItsLayersAndEveryFileAgrees) {
   ASSERT_EQ(run("sample plate -o plate.step"), 0) << err;
   ASSERT_EQ(run("info plate.step --json"), 0) << err;
-  const double volume = lines().at(0)["volume"];
+  EXPECT_EQ(lines().at(0)["phase"], "diagnosis");
+  const double volume = lines().at(1)["volume"];
   ASSERT_EQ(run("mesh plate.step -n 4 --json -o p.msh -o p.vtu -o p.mesh"), 0) << err;
 
   const std::vector<json> told = lines();

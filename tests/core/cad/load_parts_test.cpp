@@ -119,11 +119,42 @@ TEST(LoadParts, NamesColorsAndPlacesOfAnAssembly) {
                                              "3xAA-BC3AAW v7"}));
 }
 
-TEST(LoadParts, RefusesStepWithoutSolid) {
+TEST(LoadParts, SewsLooseFaces) {
   const auto loose = kReal / "din_rail_adapter_loose_faces.step";
   if (!std::filesystem::exists(loose)) GTEST_SKIP() << "missing " << loose;
-  EXPECT_TRUE(says(refusal(loose), "no solid"));
+  const Inspection found = inspect_parts(loose);
+  ASSERT_TRUE(found.parts.ok()) << found.parts.error().message;
+  EXPECT_EQ(found.diagnosis.free_faces + found.diagnosis.free_shells, 63);
+  ASSERT_EQ(found.parts->size(), 1);
+  EXPECT_NEAR((*found.parts)[0].cad_volume, 5368.1, 1e-3 * 5368.1);
+  EXPECT_TRUE(check_closed((*found.parts)[0].surface).ok());
+  bool told = false;
+  for (const std::string& note : (*found.parts)[0].notes)
+    told = told || note.find("63 loose faces sewn") != std::string::npos;
+  EXPECT_TRUE(told);
+
+  LoadParams strict;
+  strict.repair = Repair::none;
+  EXPECT_TRUE(says(refusal(loose, strict), "no solid"));
   EXPECT_TRUE(says(refusal(kReal / "nist_ftc_08_asme1_ap242-e1-tg.stp"), "tessellated geometry"));
+}
+
+TEST(LoadParts, WrapsWhatSmallRepairsDoNotClose) {
+  const auto teapot = kReal / "utah_teapot.stl";
+  if (!std::filesystem::exists(teapot)) GTEST_SKIP() << "missing " << teapot;
+  const Inspection found = inspect_parts(teapot);
+  ASSERT_TRUE(found.parts.ok()) << found.parts.error().message;
+  std::size_t open = 0;
+  for (const Diagnosis& d : found.diagnosis.bodies) open += d.open_edges.count;
+  EXPECT_EQ(open, 64);
+  for (const Part& part : *found.parts) {
+    EXPECT_TRUE(check_closed(part.surface).ok());
+    EXPECT_EQ(find_self_intersections(part.surface).pairs, 0);
+  }
+  bool told = false;
+  for (const std::string& note : (*found.parts)[0].notes)
+    told = told || note.find("Wrapped: within") != std::string::npos;
+  EXPECT_TRUE(told);
 }
 
 TEST(LoadParts, RefusesTruncatedStep) {
@@ -179,10 +210,19 @@ TEST(LoadParts, RefusesBadStl) {
   };
   test::Soup open = test::unit_box();
   open.pop_back();
-  EXPECT_TRUE(says(refusal(write("open.stl", open)), "3 open edges"));
-  EXPECT_TRUE(says(refusal(write("touching.stl", test::both(test::unit_box(),
-                                                            test::box_soup({1, 1, 0}, {2, 2, 1})))),
+  const auto strict = [&](const std::filesystem::path& file) {
+    LoadParams params;
+    params.repair = Repair::none;
+    const auto parts = load_parts(file, params);
+    EXPECT_FALSE(parts.ok());
+    return parts.ok() ? Error{} : parts.error();
+  };
+  EXPECT_TRUE(says(strict(write("open.stl", open)), "3 open edges"));
+  EXPECT_TRUE(says(strict(write("touching.stl", test::both(test::unit_box(),
+                                                           test::box_soup({1, 1, 0}, {2, 2, 1})))),
                    "not manifold"));
+  // Nothing encloses a volume here: no repair helps.
+  EXPECT_TRUE(says(refusal(write("flat.stl", {test::unit_box()[0]})), "encloses nothing"));
 }
 
 TEST(LoadParts, ReadsBodiesOfAnStlInItsUnit) {

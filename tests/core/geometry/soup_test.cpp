@@ -172,15 +172,17 @@ TEST(Soup, RefusesHolesWithCountAndPlace) {
   soup.erase(soup.begin());  // the facet (0,0,0) (0,1,0) (1,1,0)
   const Error e = refusal(soup);
   EXPECT_TRUE(says(e, "3 open edges")) << e.message;
-  EXPECT_TRUE(says(e, "0.5, 0.5, 0)") || says(e, "(0, 0.5, 0)") || says(e, "(0.5, 1, 0)"))
-      << e.message;
+  EXPECT_TRUE(says(e, "1.41 mm at (0.333333, 0.666667, 0)")) << e.message;
 }
 
 TEST(Soup, RefusesNonManifoldEdges) {
   // Two boxes that share one edge.
-  const Error e = refusal(both(unit_box(), box_soup({1, 1, 0}, {2, 2, 1})));
-  EXPECT_TRUE(says(e, "1 edge")) << e.message;
-  EXPECT_TRUE(says(e, "(1, 1, 0.5)")) << e.message;
+  SoupParams params;
+  params.repair = false;
+  const auto surface = surface_from_soup(both(unit_box(), box_soup({1, 1, 0}, {2, 2, 1})), params);
+  ASSERT_FALSE(surface.ok());
+  EXPECT_TRUE(says(surface.error(), "1 edge")) << surface.error().message;
+  EXPECT_TRUE(says(surface.error(), "(1, 1, 0.5)")) << surface.error().message;
 }
 
 TEST(Soup, RefusesWhatHasNoVolume) {
@@ -273,7 +275,7 @@ TEST_P(RealSoup, ClosesOrIsRefused) {
     EXPECT_TRUE(check_closed(part).ok());
     volume += enclosed_measure(part);
   }
-  EXPECT_NEAR(volume, expected.volume, 1e-4 * expected.volume);
+  EXPECT_NEAR(volume, expected.volume, 5e-4 * expected.volume);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -286,7 +288,10 @@ INSTANTIATE_TEST_SUITE_P(
                     RealStl{"prusa_mini_cable_cover_ascii.stl", 3623.5, 1, ""},
                     RealStl{"netgen_hinge_ascii.stl", 6336.4, 1, ""},
                     RealStl{"cpx_snapfit_case.stl", 4312.2, 1, ""},
-                    RealStl{"pathfinder_torso_back_hole.stl", 0, 0, "4 open edges"},
+                    RealStl{"m5_unit_env_housing.stl", 4476.2, 4, ""},
+                    RealStl{"timecube_box_b_duplicates.stl", 5144.4, 20, ""},
+                    RealStl{"skirt_multibody_nonmanifold.stl", 6573.3, 1, ""},
+                    RealStl{"pathfinder_torso_back_hole.stl", 114780, 1, ""},
                     RealStl{"utah_teapot.stl", 0, 0, "64 open edges"}),
     [](const auto& each) { return std::filesystem::path(each.param.file).stem().string(); });
 
