@@ -56,7 +56,7 @@ Json finding_json(const Finding& finding) {
 
 /// What the findings are called, in text and JSON.
 struct Kind {
-  const Finding Diagnosis::* finding;
+  const Finding Diagnosis::*finding;
   const char* key;
   const char* text;
 };

@@ -90,8 +90,7 @@ Result<WrappedBodies> wrap_bodies(const Triangles& triangles, const LoadParams& 
     if (wrapped->from_file.distance < wrapped->spacing) break;
     how.spacing = 0.5 * wrapped->spacing;
     const double half = 0.25 * finer;
-    Result<Wrapped> again =
-        wrap(triangles, how, progress.portion(0.5 + half, 0.6 + half));
+    Result<Wrapped> again = wrap(triangles, how, progress.portion(0.5 + half, 0.6 + half));
     if (!again) return again.error();
     if (again->spacing > 0.9 * wrapped->spacing) break;  // no memory for more
     wrapped = std::move(again);
@@ -129,8 +128,8 @@ Result<std::vector<Part>> finish(ReferenceSurface<3> surface, const LoadParams& 
     const SelfIntersections crossing = find_self_intersections(surface, progress);
     if (progress.cancelled()) return cancelled_error();
     Triangles mended = triangles_of(surface);
-    if (crossing.pairs > 0 && mend_crossings(mended, 0.1 * diagonal_of(surface.points),
-                                             &parts[0].notes, progress)) {
+    if (crossing.pairs > 0 &&
+        mend_crossings(mended, 0.1 * diagonal_of(surface.points), &parts[0].notes, progress)) {
       SoupParams sound;
       sound.repair = false;
       auto bodies = surfaces_from_triangles(std::move(mended), sound, nullptr, progress);
@@ -140,11 +139,11 @@ Result<std::vector<Part>> finish(ReferenceSurface<3> surface, const LoadParams& 
       surface = {};
     } else if (crossing.pairs > 0) {
       std::vector<std::string> notes;
-      Result<WrappedBodies> wrapped = wrap_bodies(
-          triangles_of(surface), params,
-          counted(crossing.pairs, "pair") + " of facets cross each other, the first at " +
-              place_text(crossing.place) + ". ",
-          notes, progress);
+      Result<WrappedBodies> wrapped = wrap_bodies(triangles_of(surface), params,
+                                                  counted(crossing.pairs, "pair") +
+                                                      " of facets cross each other, the first at " +
+                                                      place_text(crossing.place) + ". ",
+                                                  notes, progress);
       if (!wrapped) return wrapped.error();
       parts.clear();
       for (auto& body : wrapped->bodies) {
@@ -177,8 +176,7 @@ Result<std::vector<Part>> parts_of(Triangles triangles, const std::string& name,
     SoupParams soup;
     soup.repair = params.repair == Repair::automatic;
     std::vector<std::string> repairs;
-    auto bodies =
-        surfaces_from_triangles(triangles, soup, &repairs, progress.portion(0, 0.3));
+    auto bodies = surfaces_from_triangles(triangles, soup, &repairs, progress.portion(0, 0.3));
     if (bodies) {
       surfaces = *std::move(bodies);
       notes.insert(notes.begin(), repairs.begin(), repairs.end());
@@ -226,7 +224,8 @@ Result<std::vector<Part>> parts_of(Triangles triangles, const std::string& name,
 }
 
 Error about(const std::filesystem::path& file, Error error) {
-  if (error.code != Code::cancelled) error.message = file.filename().string() + ": " + error.message;
+  if (error.code != Code::cancelled)
+    error.message = file.filename().string() + ": " + error.message;
   return error;
 }
 
@@ -271,8 +270,8 @@ Result<std::vector<Part>> load_step(const std::filesystem::path& file, const Loa
   for (StepBody& body : content.bodies) {
     if (progress.cancelled()) return cancelled_error();
     if (diagnosis) {
-      Diagnosis found = diagnose(body.rough.facets.empty() ? triangles_of(body.part.surface)
-                                                           : body.rough);
+      Diagnosis found =
+          diagnose(body.rough.facets.empty() ? triangles_of(body.part.surface) : body.rough);
       found.name = body.part.name;
       found.exact_shape_valid = body.exact_shape_valid;
       diagnosis->bodies.push_back(std::move(found));
@@ -311,7 +310,8 @@ Result<std::vector<Part>> load(const std::filesystem::path& file, const LoadPara
   }
   const std::string extension = extension_of(file);
   if (extension == ".stl") return load_stl(file, params, diagnosis, progress);
-  if (extension == ".step" || extension == ".stp") return load_step(file, params, diagnosis, progress);
+  if (extension == ".step" || extension == ".stp")
+    return load_step(file, params, diagnosis, progress);
   return Error{Code::bad_input,
                file.filename().string() + ": '" + extension + "' is no format of parts",
                "Lamella reads STEP (.step, .stp) and STL (.stl)."};

@@ -187,7 +187,8 @@ Error no_solid(const std::filesystem::path& file, const std::string& text, const
   return bad(file, "no solid: the file holds no shape", "Export the part again.");
 }
 
-/// Sews faces into solids, with a tolerance no wider than needed; what does not close comes as it is.
+/// Sews faces into solids, with a tolerance no wider than needed; what does not close comes as it
+/// is.
 std::vector<Found> sew(const std::vector<TopoDS_Shape>& faces, const std::string& name,
                        const Progress& progress) {
   Bnd_Box box;
@@ -209,8 +210,8 @@ std::vector<Found> sew(const std::vector<TopoDS_Shape>& faces, const std::string
   }
   if (sewn.IsNull()) return {};
   std::vector<Found> found;
-  std::string text = counted(faces.size(), "loose face") + " sewn within " + length_text(tolerance) +
-                     " mm";
+  std::string text =
+      counted(faces.size(), "loose face") + " sewn within " + length_text(tolerance) + " mm";
   for (TopExp_Explorer it(sewn, TopAbs_SHELL); it.More(); it.Next()) {
     if (!BRep_Tool::IsClosed(it.Current())) continue;
     BRepBuilderAPI_MakeSolid maker(TopoDS::Shell(it.Current()));
@@ -247,8 +248,8 @@ Result<StepBody> body_of(Found found, const LoadParams& params, const Progress& 
   StepBody body;
   body.exact_shape_valid = BRepCheck_Analyzer(found.solid).IsValid();
   const SolidInfo info = found.info;
-  Result<Part> part = tessellate(found.solid, std::move(found.info), params, body.rough,
-                                 progress.portion(0, 0.7));
+  Result<Part> part =
+      tessellate(found.solid, std::move(found.info), params, body.rough, progress.portion(0, 0.7));
   if (!part && part.error().code != Code::cancelled && params.repair == Repair::automatic) {
     if (const TopoDS_Shape again = healed(found.solid); !again.IsNull()) {
       Triangles rough;
@@ -326,8 +327,8 @@ Result<void> read_step(const std::filesystem::path& file, const LoadParams& para
       return 0.4 + 0.6 * static_cast<double>(i) / static_cast<double>(found.size());
     };
     if (progress.cancelled()) return cancelled_error();
-    Result<StepBody> body = body_of(std::move(found[k]), params,
-                                    progress.portion(at(k), at(k + 1), "Tessellating"));
+    Result<StepBody> body =
+        body_of(std::move(found[k]), params, progress.portion(at(k), at(k + 1), "Tessellating"));
     if (!body) return body.error();
     content.bodies.push_back(*std::move(body));
   }

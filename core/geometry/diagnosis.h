@@ -59,8 +59,8 @@ struct Diagnosis {
 Diagnosis diagnose(const Triangles& triangles, const DiagnoseParams& params = {},
                    const Progress& progress = {});
 
-/// One diagnosis a body: an outer shell with the voids directly inside it, or an open shell. Largest
-/// first.
+/// One diagnosis a body: an outer shell with the voids directly inside it, or an open shell.
+/// Largest first.
 std::vector<Diagnosis> diagnose_bodies(const Triangles& triangles,
                                        const DiagnoseParams& params = {},
                                        const Progress& progress = {});
@@ -68,12 +68,14 @@ std::vector<Diagnosis> diagnose_bodies(const Triangles& triangles,
 /// A file and its bodies as they are.
 struct FileDiagnosis {
   std::vector<Diagnosis> bodies;
-  std::size_t free_shells = 0;          ///< STEP: shells that belong to no solid
-  std::size_t free_faces = 0;           ///< STEP: faces that belong to no shell
-  std::string unit_guess;  ///< of a file without unit, from its size: "mm", "inch" or "m"; else empty
+  std::size_t free_shells = 0;  ///< STEP: shells that belong to no solid
+  std::size_t free_faces = 0;   ///< STEP: faces that belong to no shell
+  std::string
+      unit_guess;  ///< of a file without unit, from its size: "mm", "inch" or "m"; else empty
 };
 
-/// The unit that a part of this size, in file units, is likely in: parts are between 15 mm and 15 m.
+/// The unit that a part of this size, in file units, is likely in: parts are between 15 mm and 15
+/// m.
 std::string guess_unit(double diagonal);
 
 }  // namespace lamella

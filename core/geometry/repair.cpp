@@ -110,7 +110,6 @@ void weld(Triangles& t, double reach, bool collapse) {
   drop_degenerate(t);
 }
 
-
 // ------------------------------------------------------------------------------------ fans
 
 /// One facet at an edge, by its angle around it. Material lies towards smaller angles of a facet
@@ -152,7 +151,8 @@ std::vector<Blade> blades_of(const Triangles& t, std::span<const EdgeUse> edge) 
 /// Pairs of facets with material between them; empty when the windings do not match up.
 std::vector<std::array<std::int32_t, 2>> pair_blades(const std::vector<Blade>& blades) {
   const auto n = static_cast<std::ptrdiff_t>(blades.size());
-  const auto forward = std::count_if(blades.begin(), blades.end(), [](auto& b) { return b.forward; });
+  const auto forward =
+      std::count_if(blades.begin(), blades.end(), [](auto& b) { return b.forward; });
   if (2 * forward != n) return {};
   // Brackets around a circle: begin where no bracket is open.
   std::ptrdiff_t depth = 0, least = 0, start = 0;
@@ -177,8 +177,8 @@ std::vector<std::array<std::int32_t, 2>> pair_blades(const std::vector<Blade>& b
   return pairs;
 }
 
-/// Edges whose ends hang together around both sides cannot come apart there: each pair of facets gets
-/// a point of its own in the middle, moved into its material.
+/// Edges whose ends hang together around both sides cannot come apart there: each pair of facets
+/// gets a point of its own in the middle, moved into its material.
 void part_middles(Triangles& t, double gap) {
   constexpr int kRounds = 6;  // a facet is split at one edge a round
   for (int round = 0; round < kRounds; ++round) {
@@ -224,8 +224,8 @@ std::vector<Loop> open_loops(const Triangles& t) {
   std::map<std::int32_t, std::vector<std::int32_t>> next;
   for_each_edge(edge_uses(t.facets), [&](std::span<const EdgeUse> edge) {
     if (edge.size() != 1) return;
-    const auto [from, to] = edge[0].forward ? std::pair(edge[0].b, edge[0].a)
-                                            : std::pair(edge[0].a, edge[0].b);
+    const auto [from, to] =
+        edge[0].forward ? std::pair(edge[0].b, edge[0].a) : std::pair(edge[0].a, edge[0].b);
     next[from].push_back(to);
   });
   std::vector<Loop> loops;
@@ -284,7 +284,8 @@ std::vector<Facet> least_area(const Triangles& t, const std::vector<std::int32_t
         for (std::size_t k = i + 1; k < j; ++k) {
           if (cost[i * n + k] >= kNone || cost[k * n + j] >= kNone) continue;
           const double area =
-              0.5 * facet_normal<3>({t.points[loop[i]], t.points[loop[k]], t.points[loop[j]]}).norm();
+              0.5 *
+              facet_normal<3>({t.points[loop[i]], t.points[loop[k]], t.points[loop[j]]}).norm();
           const double sum = cost[i * n + k] + cost[k * n + j] + area;
           if (sum < best) {
             best = sum;
@@ -334,7 +335,8 @@ void weld_cracks(Triangles& t, double tolerance, Notes* notes) {
   }
   if (now.open < before.open)
     note(notes, "Cracks along " + counted(before.open - now.open, "open edge") +
-                    " were closed by welding vertices nearer than " + length_text(reached) + " mm.");
+                    " were closed by welding vertices nearer than " + length_text(reached) +
+                    " mm.");
 }
 
 std::size_t split_at_t_vertices(Triangles& t, double tolerance, Notes* notes) {
@@ -437,8 +439,7 @@ std::size_t split_fans(Triangles& t, double gap, Notes* notes) {
     const std::int32_t root = joined.root(static_cast<std::int32_t>(c));
     auto& mine = copies[v];
     const auto [it, added] = copy_of.emplace(root, mine.size());
-    if (added)
-      mine.push_back({v, together.root(static_cast<std::int32_t>(f)), Vec<3>::Zero()});
+    if (added) mine.push_back({v, together.root(static_cast<std::int32_t>(f)), Vec<3>::Zero()});
     mine[it->second].normal += facet_normal<3>(t.corners(f));
   }
   std::size_t moved = 0;
@@ -591,8 +592,8 @@ bool mend_crossings(Triangles& t, double limit, Notes* notes, const Progress& pr
         !self_intersecting_pairs(trial.points, trial.facets, progress).empty())
       continue;
     note(notes, counted(pairs.size(), "pair") + " of facets that crossed, the first at " +
-                    place_text(t.points[t.facets[pairs[0][0]][0]]) + ", cut out: " +
-                    (told.empty() ? "" : told[0]));
+                    place_text(t.points[t.facets[pairs[0][0]][0]]) +
+                    ", cut out: " + (told.empty() ? "" : told[0]));
     t = std::move(trial);
     return !progress.cancelled();
   }
@@ -644,9 +645,10 @@ Result<Shells> orient(Triangles& t, Notes* notes) {
           turned[g] = turn;
           shell.push_back(g);
         } else if (turned[g] != turn) {
-          return Error{Code::bad_input,"the surface is one-sided (like a Moebius strip) near " +
-                         place_text(t.points[t.facets[g][0]]),
-                     "Such a surface encloses no volume; repair it in the CAD program."};
+          return Error{Code::bad_input,
+                       "the surface is one-sided (like a Moebius strip) near " +
+                           place_text(t.points[t.facets[g][0]]),
+                       "Such a surface encloses no volume; repair it in the CAD program."};
         }
       }
     }

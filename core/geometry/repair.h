@@ -29,8 +29,8 @@ std::size_t split_fans(Triangles& t, double gap, Notes* notes);
 Result<void> fill_holes(Triangles& t, double limit, Notes* notes);
 
 /// Facets of a closed surface that cross each other are cut out, with up to three rings of their
-/// neighbors, and the holes filled, each no wider than `limit` mm: for few of them. True when nothing
-/// crosses any more and the surface is closed; otherwise nothing is changed.
+/// neighbors, and the holes filled, each no wider than `limit` mm: for few of them. True when
+/// nothing crosses any more and the surface is closed; otherwise nothing is changed.
 bool mend_crossings(Triangles& t, double limit, Notes* notes, const Progress& progress = {});
 
 struct Shells {

@@ -215,9 +215,8 @@ Result<Prepared> prepare(Triangles triangles, const SoupParams& params, Notes* n
 
 }  // namespace
 
-Result<ReferenceSurface<3>> surface_from_soup(const TriangleSoup& soup,
-                                              const SoupParams& params, Notes* notes,
-                                              const Progress& progress) {
+Result<ReferenceSurface<3>> surface_from_soup(const TriangleSoup& soup, const SoupParams& params,
+                                              Notes* notes, const Progress& progress) {
   Result<Prepared> prepared = prepare(merge_exact(soup), params, notes, progress);
   if (!prepared) return prepared.error();
   std::vector<const Shell*> all;

@@ -32,11 +32,9 @@ Result<std::vector<ReferenceSurface<3>>> surfaces_from_soup(
     std::vector<std::string>* notes = nullptr, const Progress& progress = {});
 
 /// The same of triangles whose vertices are known: equal coordinates stay apart.
-Result<std::vector<ReferenceSurface<3>>> surfaces_from_triangles(Triangles triangles,
-                                                                 const SoupParams& params = {},
-                                                                 std::vector<std::string>* notes =
-                                                                     nullptr,
-                                                                 const Progress& progress = {});
+Result<std::vector<ReferenceSurface<3>>> surfaces_from_triangles(
+    Triangles triangles, const SoupParams& params = {}, std::vector<std::string>* notes = nullptr,
+    const Progress& progress = {});
 
 /// Volume enclosed by a closed surface, eq. (1.23), mm^D.
 template <int D>

@@ -20,8 +20,12 @@ double slimness(const std::array<Vec<3>, 3>& p) {
 class Thinner {
  public:
   Thinner(Triangles& t, const ThinOutParams& params, const std::vector<char>& locked)
-      : t_(t), params_(params), locked_(locked), error_(t.points.size(), 0),
-        around_(t.points.size()), alive_(t.facets.size(), 1) {
+      : t_(t),
+        params_(params),
+        locked_(locked),
+        error_(t.points.size(), 0),
+        around_(t.points.size()),
+        alive_(t.facets.size(), 1) {
     for (std::size_t f = 0; f < t.facets.size(); ++f)
       for (const std::int32_t v : t.facets[f]) around_[v].push_back(static_cast<std::int32_t>(f));
   }

@@ -11,9 +11,9 @@ struct ThinOutParams {
 };
 
 /// Takes vertices out of a closed manifold surface where what remains stays within the tolerance: a
-/// vertex is drawn onto a neighbor, so that none moves. The surface stays closed, manifold and free of
-/// self-intersections if it was; triangles get no worse than 1 : 12 by it. Points that are no longer
-/// used stay in the list. Cancel ends it early with a surface as sound as any.
+/// vertex is drawn onto a neighbor, so that none moves. The surface stays closed, manifold and free
+/// of self-intersections if it was; triangles get no worse than 1 : 12 by it. Points that are no
+/// longer used stay in the list. Cancel ends it early with a surface as sound as any.
 void thin_out(Triangles& surface, const ThinOutParams& params, const Progress& progress = {});
 
 }  // namespace lamella

@@ -19,9 +19,9 @@ class WindingNumber {
 
  private:
   struct Node {
-    Vec<3> center;            // area-weighted
-    Vec<3> dipole;            // sum of the area vectors
-    double radius = 0;        // of a ball around the center that holds all facets
+    Vec<3> center;      // area-weighted
+    Vec<3> dipole;      // sum of the area vectors
+    double radius = 0;  // of a ball around the center that holds all facets
     std::int32_t begin = 0, end = 0;
     std::int32_t second = 0;  // the other child is the next node; 0: a leaf
   };

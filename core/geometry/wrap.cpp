@@ -275,8 +275,8 @@ struct Crossing {
 /// or the surface has an edge or a corner.
 struct Ring {
   std::vector<std::int32_t> crossings;
-  Vec<3> middle;          // mean of the crossings
-  Vec<3> feature;         // where the planes of the facets meet
+  Vec<3> middle;   // mean of the crossings
+  Vec<3> feature;  // where the planes of the facets meet
   bool sharp = false;
   std::int32_t center = -1;  // vertex, once built
 };
@@ -313,7 +313,7 @@ class Surfacer {
     bridging.clear();
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
       t.points.push_back(undone_.count(static_cast<std::int32_t>(i)) > 0 ? halfway_[i]
-                                                                        : crossings_[i].point);
+                                                                         : crossings_[i].point);
       bridging.push_back(crossings_[i].normal.isZero());
     }
     const auto edge_points = static_cast<std::int32_t>(t.points.size());
@@ -535,11 +535,10 @@ std::size_t drop_specks(Triangles& t, double least) {
     volume[s] += (p[0] - origin[s]).dot((p[1] - origin[s]).cross(p[2] - origin[s])) / 6;
   }
   std::size_t f = 0;
-  std::erase_if(t.facets, [&](const Facet&) {
-    return std::abs(volume[shells->of_facet[f++]]) < least;
-  });
-  return static_cast<std::size_t>(std::count_if(
-      volume.begin(), volume.end(), [&](double v) { return std::abs(v) < least; }));
+  std::erase_if(t.facets,
+                [&](const Facet&) { return std::abs(volume[shells->of_facet[f++]]) < least; });
+  return static_cast<std::size_t>(
+      std::count_if(volume.begin(), volume.end(), [&](double v) { return std::abs(v) < least; }));
 }
 
 void drop_unused(Triangles& t, std::vector<char>& tag) {
@@ -606,8 +605,7 @@ void measure(const Triangles& file, const Locator<3>& file_locator, const Grid& 
           const std::size_t f = order[first + k];
           const Vec<3> n = facet_normal<3>(pieces.corners(f)).stableNormalized();
           const Vec<3>& x = each[f].place;
-          bounds[k] =
-              (grid.winding(x + off * n) > 0.5) != (grid.winding(x - off * n) > 0.5);
+          bounds[k] = (grid.winding(x + off * n) > 0.5) != (grid.winding(x - off * n) > 0.5);
         },
         8);
     const auto end = bounds.begin() + static_cast<std::ptrdiff_t>(count);

@@ -56,9 +56,9 @@ TEST(Diagnosis, CountsEveryKindAndTellsWhere) {
 }
 
 TEST(Diagnosis, TellsVoidsFromBodies) {
-  const test::Soup soup = both(both(box_soup({0, 0, 0}, {3, 3, 3}), box_soup({10, 0, 0}, {11, 1, 1})),
-                               both(turned(box_soup({.5, .5, .5}, {2.5, 2.5, 2.5})),
-                                    box_soup({1, 1, 1}, {2, 2, 2})));
+  const test::Soup soup =
+      both(both(box_soup({0, 0, 0}, {3, 3, 3}), box_soup({10, 0, 0}, {11, 1, 1})),
+           both(turned(box_soup({.5, .5, .5}, {2.5, 2.5, 2.5})), box_soup({1, 1, 1}, {2, 2, 2})));
   const auto bodies = diagnose_bodies(merge_exact(soup));
   ASSERT_EQ(bodies.size(), 3);
   EXPECT_EQ(bodies[0].shells.size(), 2);

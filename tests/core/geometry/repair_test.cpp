@@ -19,10 +19,9 @@ using test::unit_box;
 Soup sphere(int rings) {
   const auto at = [&](int i, int j) {
     const double a = M_PI * i / rings, b = M_PI * (j % (2 * rings)) / rings;
-    return i == 0 ? Vec<3>(0, 0, 1)
-           : i == rings
-               ? Vec<3>(0, 0, -1)
-               : Vec<3>(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
+    return i == 0       ? Vec<3>(0, 0, 1)
+           : i == rings ? Vec<3>(0, 0, -1)
+                        : Vec<3>(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
   };
   Soup soup;
   for (int i = 0; i < rings; ++i)
@@ -101,7 +100,7 @@ TEST(Repair, SplitsFacetsAtTVertices) {
   Soup soup = unit_box();
   std::erase_if(soup, [](const auto& f) { return f[0][2] == 1 && f[1][2] == 1 && f[2][2] == 1; });
   const Vec<3> center(.5, .5, 1);
-  const Vec<3> rim[8] = {{0, 0, 1},   {.5, 0, 1}, {1, 0, 1}, {1, .25, 1},
+  const Vec<3> rim[8] = {{0, 0, 1}, {.5, 0, 1}, {1, 0, 1}, {1, .25, 1},
                          {1, 1, 1}, {.3, 1, 1}, {0, 1, 1}, {0, .5, 1}};
   for (int k = 0; k < 8; ++k) soup.push_back({center, rim[k], rim[(k + 1) % 8]});
   std::vector<std::string> notes;

@@ -278,22 +278,23 @@ TEST_P(RealSoup, ClosesOrIsRefused) {
   EXPECT_NEAR(volume, expected.volume, 5e-4 * expected.volume);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Parts, RealSoup,
-    testing::Values(RealStl{"fan_duct_hotend_mount.stl", 9059.5, 1, ""},
-                    RealStl{"featuretype_inch_cracks.stl", 11.628, 1, ""},
-                    RealStl{"mark2_audio_chamber_cracks.stl", 90651, 1, ""},
-                    RealStl{"shaker_top_cover_bad_normals.stl", 19034, 1, ""},
-                    RealStl{"prusa_mini_z_carriage_front.stl", 47829, 1, ""},
-                    RealStl{"prusa_mini_cable_cover_ascii.stl", 3623.5, 1, ""},
-                    RealStl{"netgen_hinge_ascii.stl", 6336.4, 1, ""},
-                    RealStl{"cpx_snapfit_case.stl", 4312.2, 1, ""},
-                    RealStl{"m5_unit_env_housing.stl", 4476.2, 4, ""},
-                    RealStl{"timecube_box_b_duplicates.stl", 5144.4, 20, ""},
-                    RealStl{"skirt_multibody_nonmanifold.stl", 6573.3, 1, ""},
-                    RealStl{"pathfinder_torso_back_hole.stl", 114780, 1, ""},
-                    RealStl{"utah_teapot.stl", 0, 0, "64 open edges"}),
-    [](const auto& each) { return std::filesystem::path(each.param.file).stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Parts, RealSoup,
+                         testing::Values(RealStl{"fan_duct_hotend_mount.stl", 9059.5, 1, ""},
+                                         RealStl{"featuretype_inch_cracks.stl", 11.628, 1, ""},
+                                         RealStl{"mark2_audio_chamber_cracks.stl", 90651, 1, ""},
+                                         RealStl{"shaker_top_cover_bad_normals.stl", 19034, 1, ""},
+                                         RealStl{"prusa_mini_z_carriage_front.stl", 47829, 1, ""},
+                                         RealStl{"prusa_mini_cable_cover_ascii.stl", 3623.5, 1, ""},
+                                         RealStl{"netgen_hinge_ascii.stl", 6336.4, 1, ""},
+                                         RealStl{"cpx_snapfit_case.stl", 4312.2, 1, ""},
+                                         RealStl{"m5_unit_env_housing.stl", 4476.2, 4, ""},
+                                         RealStl{"timecube_box_b_duplicates.stl", 5144.4, 20, ""},
+                                         RealStl{"skirt_multibody_nonmanifold.stl", 6573.3, 1, ""},
+                                         RealStl{"pathfinder_torso_back_hole.stl", 114780, 1, ""},
+                                         RealStl{"utah_teapot.stl", 0, 0, "64 open edges"}),
+                         [](const auto& each) {
+                           return std::filesystem::path(each.param.file).stem().string();
+                         });
 
 }  // namespace
 }  // namespace lamella

@@ -42,8 +42,7 @@ Wrapped wrap_of(const Soup& soup, double spacing) {
 }
 
 Soup rotated(Soup soup) {
-  const Mat<3> r =
-      Eigen::AngleAxisd(0.7, Vec<3>(1, 2, -.5).normalized()).toRotationMatrix();
+  const Mat<3> r = Eigen::AngleAxisd(0.7, Vec<3>(1, 2, -.5).normalized()).toRotationMatrix();
   for (auto& f : soup)
     for (Vec<3>& p : f) p = r * p;
   return soup;
@@ -133,8 +132,7 @@ TEST(Wrap, ClosesAHole) {
 }
 
 TEST(Wrap, KeepsVoidsAndTurnsShells) {
-  const Soup hollow =
-      both(box_soup({0, 0, 0}, {3, 3, 3}), turned(box_soup({1, 1, 1}, {2, 2, 2})));
+  const Soup hollow = both(box_soup({0, 0, 0}, {3, 3, 3}), turned(box_soup({1, 1, 1}, {2, 2, 2})));
   EXPECT_NEAR(volume_of(wrap_of(hollow, .15).surface), 26, .1);
   EXPECT_NEAR(volume_of(wrap_of(turned(box_soup({0, 0, 0}, {3, 3, 3})), .2).surface), 27, .1);
 }
@@ -150,8 +148,7 @@ TEST(Wrap, BoundsItsMemory) {
 
 TEST(Wrap, RefusesWhatEnclosesNothing) {
   EXPECT_FALSE(wrap({}).ok());
-  EXPECT_FALSE(
-      wrap(merge_exact({{Vec<3>(0, 0, 0), Vec<3>(1, 0, 0), Vec<3>(0, 1, 0)}})).ok());
+  EXPECT_FALSE(wrap(merge_exact({{Vec<3>(0, 0, 0), Vec<3>(1, 0, 0), Vec<3>(0, 1, 0)}})).ok());
 }
 
 TEST(Wrap, CancelReturnsCancelled) {
