@@ -34,7 +34,7 @@ double seconds_since(Clock::time_point start) {
 constexpr double kFirstMeshShare = 0.15;  // of the progress; the iterations share the rest
 constexpr double kMinGuardShare = 0.3;
 constexpr double kAskedScale = kAskedFiner * kAskedFiner;  // of the metric
-constexpr double kSettled = 0.05;  // relative change of the node count
+constexpr double kSettled = 0.05;                          // relative change of the node count
 
 constexpr double kGained = 0.02;  // relative rise of the score that is worth another iteration
 
@@ -231,7 +231,8 @@ class BodyLoop {
       const bool enough = sizing_.may_coarsen() || record->layers.places == 0 ||
                           record->layers.mean >= settings_.layers;
       converged_ = settled && enough;
-      done_ = options_.until_settled && settled && (score >= 1 || score < (1 + kGained) * best_score_);
+      done_ =
+          options_.until_settled && settled && (score >= 1 || score < (1 + kGained) * best_score_);
     }
     // Among meshes as good the latest is the most conforming one. The first mesh has no layers to
     // speak of: anything adapted goes before it.

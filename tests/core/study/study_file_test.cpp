@@ -22,7 +22,8 @@ Study full_study() {
                   {"rest"}};
   study.groups[1].faces = {0};
   study.cuts = {{"middle", {1, 2, 3.25}, {0, 0.6, -0.8}, false}};
-  study.options = {0.02, 0.2, 9, 3, 12345678901234567890u, Detector::neighborhood, true, false, 512};
+  study.options = {0.02, 0.2,   9,  3, 12345678901234567890u, Detector::neighborhood,
+                   true, false, 512};
   return study;
 }
 
