@@ -92,10 +92,12 @@ void WindowTools::offer_recovery() {
         [this, last] {
           Session& session = window_.session();
           session.open_study(last.file, last.made_for);
-          // It goes once it is open here, where it is kept anew.
-          connect(
-              &session, &Session::parts_changed, this, [last] { Recovery::discard(last); },
-              Qt::SingleShotConnection);
+          // It goes once it is open here, where it is kept anew; not when it could not be opened.
+          connect(&session, &Session::study_opened, this, [this, last](const QString& opened) {
+            if (opened != QString::fromStdString(last.file.string())) return;
+            recovery_->keep();
+            Recovery::discard(last);
+          });
         }},
        {tr("Discard"), [left] {
           for (const Recovery::Left& one : left) Recovery::discard(one);

@@ -86,14 +86,12 @@ Result<WrappedBodies> wrap_bodies(const Triangles& triangles, const LoadParams& 
   how.spacing = params.wrap_spacing.value_or(0);
   Result<Wrapped> wrapped = wrap(triangles, how, progress.portion(0, 0.5));
   if (!wrapped) return wrapped.error();
-  for (int finer = 0; finer < 1 && !params.wrap_spacing; ++finer) {
-    if (wrapped->from_file.distance < wrapped->spacing) break;
+  if (!params.wrap_spacing && wrapped->from_file.distance >= wrapped->spacing) {
     how.spacing = 0.5 * wrapped->spacing;
-    const double half = 0.25 * finer;
-    Result<Wrapped> again = wrap(triangles, how, progress.portion(0.5 + half, 0.6 + half));
+    Result<Wrapped> again = wrap(triangles, how, progress.portion(0.5, 0.9));
     if (!again) return again.error();
-    if (again->spacing > 0.9 * wrapped->spacing) break;  // no memory for more
-    wrapped = std::move(again);
+    const bool finer = again->spacing < 0.9 * wrapped->spacing;  // there was memory for it
+    if (finer) wrapped = std::move(again);
   }
   const double error = std::max(wrapped->to_file.distance, wrapped->from_file.distance);
   std::string text = why + "Wrapped: within " + length_text(error) + " mm of the file's surface (" +
@@ -170,8 +168,10 @@ Result<std::vector<Part>> parts_of(Triangles triangles, const std::string& name,
                                    const Progress& progress) {
   std::vector<ReferenceSurface<3>> surfaces;
   double error = 0;
-  std::string why;
-  bool wrapped = params.repair == Repair::wrap;
+  std::optional<Error> refused;
+  const bool finite = std::all_of(triangles.points.begin(), triangles.points.end(),
+                                  [](const Vec<3>& p) { return p.allFinite(); });
+  bool wrapped = params.repair == Repair::wrap && finite;
   if (!wrapped) {
     SoupParams soup;
     soup.repair = params.repair == Repair::automatic;
@@ -180,20 +180,20 @@ Result<std::vector<Part>> parts_of(Triangles triangles, const std::string& name,
     if (bodies) {
       surfaces = *std::move(bodies);
       notes.insert(notes.begin(), repairs.begin(), repairs.end());
-    } else if (params.repair == Repair::none || bodies.error().code != Code::bad_input) {
+    } else if (params.repair == Repair::none || bodies.error().code != Code::bad_input || !finite) {
       return bodies.error();
     } else {
+      refused = bodies.error();
       wrapped = true;
-      why = "Small repairs did not do: " + bodies.error().message + ". ";
     }
   }
   if (wrapped) {
+    const std::string why =
+        refused ? "Small repairs did not do: " + refused->message + ". " : std::string();
     auto bodies = wrap_bodies(triangles, params, why, notes, progress.portion(0.3, 0.8));
-    if (!bodies) {
-      Error failure = bodies.error();
-      if (failure.code == Code::bad_input && !why.empty()) failure.message = why + failure.message;
-      return failure;
-    }
+    // Of a surface that encloses nothing the first finding tells more.
+    if (!bodies && refused && bodies.error().code == Code::bad_input) return *refused;
+    if (!bodies) return bodies.error();
     surfaces = std::move(bodies->bodies);
     error = bodies->error;
   }
@@ -271,7 +271,8 @@ Result<std::vector<Part>> load_step(const std::filesystem::path& file, const Loa
     if (progress.cancelled()) return cancelled_error();
     if (diagnosis) {
       Diagnosis found =
-          diagnose(body.rough.facets.empty() ? triangles_of(body.part.surface) : body.rough);
+          diagnose(body.rough.facets.empty() ? triangles_of(body.part.surface) : body.rough, {},
+                   Progress({}, progress.stop_token()));
       found.name = body.part.name;
       found.exact_shape_valid = body.exact_shape_valid;
       diagnosis->bodies.push_back(std::move(found));

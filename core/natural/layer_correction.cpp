@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/parallel.h"
 #include "core/mesh/adjacency.h"
 
 namespace lamella {
@@ -25,7 +26,7 @@ struct LayerCorrection::Field {
 Result<LayerCorrection> LayerCorrection::learn(const LayerCorrection& before,
                                                const SimplexMesh<3>& mesh,
                                                const std::vector<double>& layers, double wanted,
-                                               const Progress& progress) {
+                                               int threads, const Progress& progress) {
   const std::size_t count = mesh.points.size();
   std::vector<double> change(count, 0.0);
   std::vector<char> known(count, 0);
@@ -38,7 +39,7 @@ Result<LayerCorrection> LayerCorrection::learn(const LayerCorrection& before,
   std::vector<double> sum(count), weight(count);
   for (int i = 0; i < kSmoothings; ++i) {
     if (progress.cancelled()) return cancelled_error();
-    progress.report(0.5 * i / kSmoothings);
+    progress.report(0.3 * i / kSmoothings);
     for (std::size_t n = 0; n < count; ++n) {
       weight[n] = known[n];
       sum[n] = known[n] ? change[n] : 0;
@@ -53,12 +54,16 @@ Result<LayerCorrection> LayerCorrection::learn(const LayerCorrection& before,
     for (std::size_t n = 1; n < count; ++n)
       if (known[n]) change[n] = sum[n] / weight[n];
   }
-  for (std::size_t n = 1; n < count; ++n)
-    change[n] = std::clamp(change[n] + std::log(before.at(mesh.points[n])), std::log(kCoarsest),
-                           std::log(kFinest));
+  const auto add_before = [&](std::size_t i) {
+    double& sum_of_changes = change[i + 1];
+    sum_of_changes = std::clamp(sum_of_changes + std::log(before.at(mesh.points[i + 1])),
+                                std::log(kCoarsest), std::log(kFinest));
+  };
+  if (!parallel_each(mesh.node_count(), threads, progress.portion(0.3, 0.6), add_before))
+    return cancelled_error();
   LayerCorrection after;
   after.field_ = std::make_shared<const Field>(
-      Field{mesh.elements, std::move(change), ElementLocator<3>(mesh, progress.portion(0.5, 1))});
+      Field{mesh.elements, std::move(change), ElementLocator<3>(mesh, progress.portion(0.6, 1))});
   if (progress.cancelled()) return cancelled_error();
   return after;
 }

@@ -19,10 +19,11 @@ class LayerCorrection {
   LayerCorrection() = default;  ///< 1 everywhere
 
   /// What `before` becomes after a mesh was made with it. `layers`: [node], measured, NaN where a
-  /// node has no say; `wanted`: what they should be. Errors: cancelled.
+  /// node has no say; `wanted`: what they should be. Does not depend on `threads` (0: all cores).
+  /// Errors: cancelled.
   static Result<LayerCorrection> learn(const LayerCorrection& before, const SimplexMesh<3>& mesh,
                                        const std::vector<double>& layers, double wanted,
-                                       const Progress& progress = {});
+                                       int threads = 0, const Progress& progress = {});
 
   /// The factor at x, 1 where nothing is known.
   double at(const Vec<3>& x) const;

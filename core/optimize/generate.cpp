@@ -49,18 +49,12 @@ class Attempt {
     boundary_ = &boundary;
   }
 
-  /// True when no element is inverted or flat.
+  /// True when no element is inverted or flat. With the surface in `peeled` it is peeled before
+  /// the rest is starred (3D), and the apex is a new node.
   bool run(NodeId apex, const Locator<3>* peeled) {
     constexpr double kPays = 0.05;  // share of the trouble a pass must remove
     constexpr int kFruitless = 12;  // passes without any gain before giving up
-    if constexpr (D == 3) {
-      if (peeled)
-        star_.start(peel(*boundary_, mesh_, *peeled, random_.next(), progress_.portion(0, 0.2)), 0);
-      else
-        star_.start(*boundary_, apex);
-    } else {
-      star_.start(*boundary_, apex);
-    }
+    start(apex, peeled);
     const double first = mesh_.bad_count();
     double least = star_.inverted_volume();
     int fewest = mesh_.bad_count(), effort = 0, fruitless = 0;
@@ -91,6 +85,14 @@ class Attempt {
 
  private:
   static constexpr int kHub = 200;  // nodes of more elements than this tie far places together
+
+  void start(NodeId apex, const Locator<3>* peeled) {
+    if constexpr (D == 3)
+      if (peeled)
+        return star_.start(
+            peel(*boundary_, mesh_, *peeled, random_.next(), progress_.portion(0, 0.2)), 0);
+    star_.start(*boundary_, apex);
+  }
 
   bool late() const { return progress_.cancelled() || Clock::now() > deadline_; }
 

@@ -16,17 +16,18 @@ constexpr int kHub = 60;          // facets around a node that takes no more
 
 using Facet = std::array<NodeId, 3>;
 
-/// What a step is worth: well oriented ones first, by their worst shape; a new point only where
-/// nothing good is left; then what turns the least volume inside out.
+constexpr int kJoinGood = 3, kNewPoint = 2, kJoin = 1, kInverts = 0, kNothing = -1;
+
+/// What a step is worth: well oriented ones first, the least volume of them first; a new point only
+/// where nothing good is left; then what turns the least volume inside out.
 struct Worth {
-  int rank = -2;
+  int rank = kNothing;
   double value = 0;
   bool operator<(const Worth& o) const { return rank != o.rank ? rank < o.rank : value < o.value; }
 };
-constexpr int kJoinGood = 3, kNewPoint = 2, kJoin = 1, kInverts = 0, kNothing = -1;
 
 struct Step {
-  Worth worth{kNothing, 0};
+  Worth worth;
   NodeId to = 0;  // 0: a new point
   Vec<3> point = Vec<3>::Zero();
 };

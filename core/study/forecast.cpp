@@ -7,6 +7,7 @@
 #include "core/study/request.h"
 
 namespace lamella {
+
 Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& first,
                                      const MetricFunction<3>& natural, const SizingField& sizing,
                                      const Progress& progress) {

@@ -205,14 +205,15 @@ class BodyLoop {
                                            progress.portion(0.55, 0.6), correct))
       return cancelled_error();
     next.thickness = std::move(field->thickness);
-    Result<IterationRecord> record = measure(next, progress.portion(0.6, 0.8));
+    Result<IterationRecord> record = measure(next, progress.portion(0.6, 0.75));
     if (!record) return record.error();
     Result<Layers> layers = measure_layers(next.mesh, part_.surface, settings_.layers,
-                                           options_.threads, progress.portion(0.8, 1));
+                                           options_.threads, progress.portion(0.75, 0.95));
     if (!layers) return layers.error();
     next.layers = std::move(layers->at_node);
     if (!outcome_.records.empty())
-      if (Result<void> learnt = learn(next, by_hand); !learnt) return learnt;
+      if (Result<void> learnt = learn(next, by_hand, progress.portion(0.95, 1)); !learnt)
+        return learnt;
     next.below = std::move(layers->below);
     record->layers = layers->stats;
     record->layers_by_nodes = average_layers(layer_numbers(next.mesh));
@@ -247,12 +248,14 @@ class BodyLoop {
   }
 
   /// Where layers are what the walls ask, not what the user does by hand.
-  Result<void> learn(const MeshState& made, const std::vector<char>& by_hand) {
+  Result<void> learn(const MeshState& made, const std::vector<char>& by_hand,
+                     const Progress& progress) {
     std::vector<double> layers = made.layers;
     for (std::size_t i = 0; i < layers.size(); ++i)
       if (by_hand[i]) layers[i] = std::numeric_limits<double>::quiet_NaN();
     Result<LayerCorrection> learnt =
-        LayerCorrection::learn(correction_, made.mesh, layers, kWantedLayers * natural_.layers);
+        LayerCorrection::learn(correction_, made.mesh, layers, kWantedLayers * natural_.layers,
+                               options_.threads, progress);
     if (!learnt) return learnt.error();
     correction_ = std::move(*learnt);
     return {};

@@ -46,6 +46,7 @@ inline std::shared_ptr<const MeshState> box_state(const Part& part, int iteratio
 struct FakeServices {
   std::chrono::milliseconds step{60};
   std::atomic<int> exports = 0;
+  std::atomic<bool> mesh_is_damaged = false;
 
   ui::Services make() {
     ui::Services services;
@@ -103,7 +104,8 @@ struct FakeServices {
     services.sample_part = [](const std::string& name) -> Result<std::filesystem::path> {
       return Error{Code::usage, "No sample part is called " + name + ".", ""};
     };
-    services.read_mesh = [](const std::filesystem::path&) -> Result<MeshState> {
+    services.read_mesh = [this](const std::filesystem::path&) -> Result<MeshState> {
+      if (mesh_is_damaged) return Error{Code::bad_input, "The mesh is damaged.", ""};
       MeshState state;
       state.mesh = box_mesh(4, 3, 2, true);
       return state;

@@ -11,6 +11,7 @@
 #include <QTreeView>
 #include <cmath>
 
+#include "core/base/atomic_file.h"
 #include "core/cad/sample_parts.h"
 #include "core/study/study_file.h"
 #include "tests/support/fake_services.h"
@@ -216,6 +217,34 @@ TEST_F(StudyItemsTest, SavedStudyIsOpenedAsItWas) {
   session().save(folder_ / "nowhere" / "s.lamella");
   EXPECT_TRUE(window_.banner().isVisible());
   EXPECT_EQ(session().file(), folder_ / "s.lamella");
+}
+
+TEST_F(StudyItemsTest, SavingOtherSettingsKeepsTheMeshThatWasThere) {
+  const auto study = folder_ / "s.lamella", mesh = folder_ / "s.lamella.vtu";
+  ASSERT_TRUE(write_file(mesh, "a mesh of an hour ago"));
+  session().save(study);
+  ASSERT_TRUE(wait_idle());
+  EXPECT_FALSE(std::filesystem::exists(mesh)) << "it would be taken for this study's";
+  EXPECT_EQ(read_file(folder_ / "s.lamella.vtu.bak").value(), "a mesh of an hour ago");
+}
+
+TEST_F(StudyItemsTest, AStudyOpensWithoutAMeshThatCannotBeRead) {
+  const auto study = folder_ / "s.lamella", mesh = folder_ / "s.lamella.vtu";
+  session().save(study);
+  ASSERT_TRUE(wait_idle());
+  ASSERT_TRUE(write_file(mesh, "damaged"));
+  fake_.mesh_is_damaged = true;
+  QSignalSpy opened(&session(), &Session::study_opened), failed(&session(), &Session::failed);
+  session().open_study(study);
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(opened.count(), 1);
+  EXPECT_EQ(failed.count(), 1) << "the user is told";
+  EXPECT_EQ(session().parts().size(), 1u);
+  EXPECT_EQ(session().shown_state(), nullptr);
+  // What cannot be opened at all is not opened: whatever waits for it keeps what it has.
+  session().open_study(folder_ / "none.lamella");
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(opened.count(), 1);
 }
 
 TEST_F(StudyItemsTest, WhatIsUnsavedSurvivesACrash) {

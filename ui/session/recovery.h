@@ -26,9 +26,10 @@ class Recovery : public QObject {
   };
   std::vector<Left> left_behind() const;
   static void discard(const Left& left);
+  /// Writes what is unsaved now, without waiting for the user to pause.
+  void keep();
 
  private:
-  void keep();
   void drop();
 
   Session& session_;

@@ -207,6 +207,7 @@ void Session::open_study(const std::filesystem::path& file,
       ReadParts read;
       LoadParams params;
       std::shared_ptr<MeshState> mesh;
+      std::optional<Error> unread;  // why there is none
     };
     const auto open_all = [&]() -> Result<Opened> {
       Result<Study> study = read_study(file);
@@ -227,9 +228,12 @@ void Session::open_study(const std::filesystem::path& file,
             std::filesystem::absolute(files[k]).lexically_normal().string();
       std::error_code ec;
       const std::filesystem::path mesh = mesh_beside(recovered_for.value_or(file));
-      if (!recovered_for && std::filesystem::is_regular_file(mesh, ec))
+      if (!recovered_for && std::filesystem::is_regular_file(mesh, ec)) {
         if (Result<MeshState> state = services_.read_mesh(mesh))
           opened.mesh = std::make_shared<MeshState>(std::move(*state));
+        else
+          opened.unread = state.error();
+      }
       return opened;
     };
     Result<Opened> opened = open_all();
@@ -253,6 +257,8 @@ void Session::open_study(const std::filesystem::path& file,
         add_iteration(std::move(iteration));
       }
       Q_EMIT study_changed();
+      if (opened->unread) report(*opened->unread);
+      Q_EMIT study_opened(text(file.string()));
     };
   });
 }
@@ -283,9 +289,15 @@ void Session::save(const std::filesystem::path& file) {
   const auto state = outdated() ? nullptr : shown_state();
   const std::filesystem::path mesh = mesh_beside(file);
   if (!state || parts_->empty()) {
-    // A mesh of other settings must not be taken for this study's.
+    // A mesh of other settings must not be taken for this study's, nor be lost.
     std::error_code ec;
-    std::filesystem::remove(mesh, ec);
+    if (std::filesystem::is_regular_file(mesh, ec)) {
+      std::filesystem::path kept = mesh;
+      kept += ".bak";
+      std::filesystem::rename(mesh, kept, ec);
+      Q_EMIT logged(
+          tr("The mesh saved before is of other settings: it is %1 now.").arg(text(kept.string())));
+    }
     Q_EMIT saved(text(file.string()));
     return;
   }

@@ -131,6 +131,8 @@ class Session : public QObject {
   void run_finished();
   void exported(const QString& file);
   void saved(const QString& file);
+  /// A study file is open, with all its parts.
+  void study_opened(const QString& file);
   void place_shown(const lamella::Vec<3>& at, double radius, const QString& text);
   void failed(const QString& message, const QString& hint);
   /// An STL was read without a unit; its size may need another one.

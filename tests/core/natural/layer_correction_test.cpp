@@ -73,7 +73,7 @@ TEST(LayerCorrection, StopsWhenCancelled) {
   std::stop_source stop;
   stop.request_stop();
   const auto result = LayerCorrection::learn({}, mesh, std::vector<double>(mesh.points.size(), 4.0),
-                                             5, Progress({}, stop.get_token()));
+                                             5, 0, Progress({}, stop.get_token()));
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, Code::cancelled);
 }
