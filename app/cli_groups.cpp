@@ -1,20 +1,10 @@
 #include "app/cli_groups.h"
 
-#include <charconv>
-#include <cmath>
-#include <optional>
+#include "app/cli_text.h"
 
 namespace lamella::cli {
 
 namespace {
-
-std::optional<double> number(std::string_view text) {
-  double value = 0;
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc{} || end.ptr != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
 
 std::vector<std::string> parts_of(const std::string& text) {
   std::vector<std::string> parts(1);
@@ -46,12 +36,12 @@ Result<BoundaryGroup> read_group(const std::string& text) {
   const std::string what = text.substr((body ? colon : equals) + 1);
   if (const std::size_t tilde = what.rfind('~'); tilde != what.npos) {
     const std::vector<std::string> coordinates = parts_of(what.substr(0, tilde));
-    const auto angle = number(std::string_view(what).substr(tilde + 1));
+    const auto angle = read_number<double>(std::string_view(what).substr(tilde + 1));
     if (coordinates.size() != 3 || !angle) return misread;
     Flood flood;
     flood.angle = *angle;
     for (int k = 0; k < 3; ++k) {
-      const auto x = number(coordinates[static_cast<std::size_t>(k)]);
+      const auto x = read_number<double>(coordinates[static_cast<std::size_t>(k)]);
       if (!x) return misread;
       flood.point[k] = *x;
     }
@@ -59,11 +49,9 @@ Result<BoundaryGroup> read_group(const std::string& text) {
     return group;
   }
   for (const std::string& face : parts_of(what)) {
-    std::int32_t id = 0;
-    const auto end = std::from_chars(face.data(), face.data() + face.size(), id);
     if (face.empty()) return misread;
-    if (end.ec == std::errc{} && end.ptr == face.data() + face.size())
-      group.faces.push_back(id);
+    if (const auto id = read_number<std::int32_t>(face))
+      group.faces.push_back(*id);
     else
       group.face_names.push_back(face);
   }

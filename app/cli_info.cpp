@@ -3,7 +3,7 @@
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
 #include "core/cad/load_parts.h"
-#include "core/study/measure.h"
+#include "core/geometry/soup.h"
 
 namespace lamella::cli {
 
@@ -21,7 +21,7 @@ void say_faces(const Part& part, Console& console) {
   for (std::size_t f = 0; f < s.facets.size(); ++f) {
     const std::array<Vec<3>, 3> p = {s.points[s.facets[f][0]], s.points[s.facets[f][1]],
                                      s.points[s.facets[f][2]]};
-    const double area = 0.5 * facet_normal<3>(p).norm();
+    const double area = facet_area(s, f);
     Found& face = faces[s.facet_face[f]];
     face.area += area;
     ++face.triangles;
@@ -161,10 +161,8 @@ int run_info(const InfoCommand& c, Console& console) {
     }
     const Vec<3> size = high - low;
     double area = 0;
-    for (const auto& f : part.surface.facets)
-      area += 0.5 * facet_normal<3>({part.surface.points[f[0]], part.surface.points[f[1]],
-                                     part.surface.points[f[2]]})
-                        .norm();
+    for (std::size_t f = 0; f < part.surface.facets.size(); ++f)
+      area += facet_area(part.surface, f);
     // Twice the volume over the area is the thickness of a thin sheet.
     const double wall = area > 0 ? 2 * part.cad_volume / area : 0;
     console.say("body \"" + part.name + "\"");

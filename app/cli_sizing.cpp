@@ -1,26 +1,18 @@
 #include "app/cli_sizing.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+
+#include "app/cli_text.h"
 
 namespace lamella::cli {
 
 namespace {
 
-std::optional<double> number(std::string_view text) {
-  double value = 0;
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc{} || end.ptr != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
-
 /// "0.3" is a size in mm, "0.3x" a factor of the natural size.
 bool read_size(std::string_view text, SizeCorrection& correction) {
   const bool factor = !text.empty() && text.back() == 'x';
   if (factor) text.remove_suffix(1);
-  (factor ? correction.factor : correction.size) = number(text);
+  (factor ? correction.factor : correction.size) = read_number<double>(text);
   return (factor ? correction.factor : correction.size).has_value();
 }
 
@@ -61,7 +53,7 @@ Result<SizingObject> with_numbers(const Kind& kind, const std::string& text,
   std::string_view rest = text;
   for (int i = 0; i < kind.numbers; ++i) {
     const std::size_t comma = rest.find(',');
-    const auto value = number(rest.substr(0, comma));
+    const auto value = read_number<double>(rest.substr(0, comma));
     if (comma == rest.npos || !value) return misread(kind.name, kind.form, text);
     values.push_back(*value);
     rest.remove_prefix(comma + 1);
@@ -82,10 +74,8 @@ Result<SizingObject> on_face(const std::string& text, const SizeCorrection& aske
   const std::string face =
       colon == text.npos ? text.substr(0, comma) : text.substr(colon + 1, comma - colon - 1);
   FacesShape shape;
-  std::int32_t id = 0;
-  const auto end = std::from_chars(face.data(), face.data() + face.size(), id);
-  if (end.ec == std::errc{} && end.ptr == face.data() + face.size())
-    shape.ids = {id};
+  if (const auto id = read_number<std::int32_t>(face))
+    shape.ids = {*id};
   else
     shape.names = {face};
   return SizingObject{"face " + text, colon == text.npos ? "" : text.substr(0, colon), shape,

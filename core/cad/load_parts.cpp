@@ -24,13 +24,7 @@ std::string extension_of(const std::filesystem::path& file) {
 
 /// Takes the needles out where that leaves the surface sound, and tells of facets that cross.
 void improve(Part& part, const Progress& progress) {
-  Vec<3> low = part.surface.points[0];
-  Vec<3> high = low;
-  for (const Vec<3>& p : part.surface.points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double size = (high - low).norm();
+  const double size = diagonal_of(part.surface.points);
   const SelfIntersections before = find_self_intersections(part.surface, progress);
   if (progress.cancelled()) return;
   if (before.pairs > 0) {

@@ -1,9 +1,8 @@
 #include "core/geometry/diagnosis.h"
 
 #include <map>
-#include <numbers>
-#include <numeric>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
 #include "core/geometry/locator.h"
 #include "core/geometry/self_intersection.h"
@@ -29,22 +28,14 @@ Vec<3> middle(const std::array<Vec<3>, 3>& p) { return (p[0] + p[1] + p[2]) / 3;
 /// Shell of every facet, numbered by their first facets.
 std::vector<std::int32_t> shells_of(const Triangles& t, const std::vector<EdgeUse>& uses,
                                     std::int32_t& count) {
-  std::vector<std::int32_t> parent(t.facets.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t f) {
-    while (parent[f] != f) f = parent[f] = parent[parent[f]];
-    return f;
-  };
+  DisjointSets shells(t.facets.size());
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
-    for (const EdgeUse& use : edge) {
-      const std::int32_t i = root(edge[0].facet), j = root(use.facet);
-      parent[std::max(i, j)] = std::min(i, j);
-    }
+    for (const EdgeUse& use : edge) shells.join(edge[0].facet, use.facet);
   });
   count = 0;
   std::vector<std::int32_t> shell(t.facets.size());
   for (std::size_t f = 0; f < shell.size(); ++f) {
-    const std::int32_t r = root(static_cast<std::int32_t>(f));
+    const std::int32_t r = shells.root(static_cast<std::int32_t>(f));
     shell[f] = r == static_cast<std::int32_t>(f) ? count++ : shell[r];
   }
   return shell;
@@ -55,20 +46,6 @@ struct Grouped {
   std::vector<std::vector<std::int32_t>> members;  // facets of each shell
   std::vector<ShellFinding> found;
 };
-
-bool inside(const Triangles& t, const std::vector<std::int32_t>& out,
-            const std::vector<std::int32_t>& in) {
-  const std::size_t step = std::max<std::size_t>(1, in.size() / 8);
-  double winding = 0;
-  for (std::size_t k = 0; k < in.size(); k += step) {
-    const Vec<3> x = middle(t.corners(in[k]));
-    winding = 0;
-    for (const std::int32_t f : out) winding += solid_angle(t.corners(f), x);
-    winding = std::abs(winding) / (4 * std::numbers::pi);
-    if (std::abs(winding - 0.5) > 0.25) break;
-  }
-  return winding > 0.5;
-}
 
 Grouped group(const Triangles& t, const Progress& progress) {
   Grouped g;
@@ -108,7 +85,7 @@ Grouped group(const Triangles& t, const Progress& progress) {
       const ShellFinding& out = g.found[j];
       if (i == j || !in.closed || !out.closed || std::abs(out.volume) <= std::abs(in.volume) ||
           (in.low.array() < out.low.array()).any() || (in.high.array() > out.high.array()).any() ||
-          !inside(t, g.members[j], g.members[i]))
+          !lies_inside(t, g.members[i], g.members[j]))
         continue;
       ++in.depth;
       if (std::abs(out.volume) < least) {
@@ -135,12 +112,7 @@ void find_duplicates(const Triangles& t, const Collector& add, Diagnosis& d) {
 
 void measure_walls(const Triangles& t, const DiagnoseParams& params, const Collector& add,
                    const Progress& progress, Diagnosis& d) {
-  ReferenceSurface<3> surface;
-  surface.points = t.points;
-  surface.facets = t.facets;
-  surface.facet_face.assign(t.facets.size(), 0);
-  surface.faces.resize(1);
-  const Locator<3> locator(surface);
+  const Locator<3> locator(plain_surface(t));
   const double diagonal = (d.high - d.low).norm();
   d.thin_limit = params.thin_wall > 0 ? params.thin_wall : 1e-3 * diagonal;
   std::vector<double> wall(t.facets.size(), 1e300);
@@ -157,23 +129,6 @@ void measure_walls(const Triangles& t, const DiagnoseParams& params, const Colle
     if (wall[f] < d.thin_limit) add(d.thin_walls, middle(t.corners(f)));
   }
   d.thinnest = least < 1e300 ? least : 0;
-}
-
-Triangles subset(const Triangles& t, const std::vector<std::int32_t>& facets) {
-  Triangles part;
-  std::vector<std::int32_t> id(t.points.size(), -1);
-  for (const std::int32_t f : facets) {
-    Facet mine = t.facets[f];
-    for (std::int32_t& v : mine) {
-      if (id[v] < 0) {
-        id[v] = static_cast<std::int32_t>(part.points.size());
-        part.points.push_back(t.points[v]);
-      }
-      v = id[v];
-    }
-    part.facets.push_back(mine);
-  }
-  return part;
 }
 
 }  // namespace

@@ -47,4 +47,13 @@ void for_each_edge(const std::vector<EdgeUse>& uses, Visit&& visit) {
   }
 }
 
+/// Whether `uses`, sorted as by edge_uses, has the edge between i and j.
+inline bool has_edge(const std::vector<EdgeUse>& uses, std::int32_t i, std::int32_t j) {
+  const EdgeUse edge{std::min(i, j), std::max(i, j), 0, true};
+  const auto it = std::lower_bound(
+      uses.begin(), uses.end(), edge,
+      [](const EdgeUse& x, const EdgeUse& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
+  return it != uses.end() && it->same_edge(edge);
+}
+
 }  // namespace lamella

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <set>
 
+#include "core/base/disjoint_sets.h"
 #include "core/geometry/self_intersection.h"
 
 namespace lamella {
@@ -16,23 +16,6 @@ using Facet = std::array<std::int32_t, 3>;
 void note(Notes* notes, std::string text) {
   if (notes) notes->push_back(std::move(text));
 }
-
-class Union {
- public:
-  explicit Union(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t root(std::int32_t v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(std::int32_t i, std::int32_t j) {
-    i = root(i);
-    j = root(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 // --------------------------------------------------------------------------------- cracks
 
@@ -83,29 +66,17 @@ void weld(Triangles& t, double reach, bool collapse) {
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 
-  std::vector<std::int32_t> parent(t.points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  const auto joined = [&](std::int32_t i, std::int32_t j) {
-    const EdgeUse edge{std::min(i, j), std::max(i, j), 0, true};
-    const auto it = std::lower_bound(
-        uses.begin(), uses.end(), edge,
-        [](const EdgeUse& x, const EdgeUse& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
-    return it != uses.end() && it->same_edge(edge);
-  };
+  DisjointSets welded(t.points.size());
   for (const NearPair& pair : near_pairs(t, vertices, reach)) {
-    const std::int32_t i = root(pair.i);
-    const std::int32_t j = root(pair.j);
-    if (i == j || (!collapse && joined(pair.i, pair.j))) continue;
+    const std::int32_t i = welded.root(pair.i);
+    const std::int32_t j = welded.root(pair.j);
+    if (i == j || (!collapse && has_edge(uses, pair.i, pair.j))) continue;
     // A chain of near vertices must not walk farther than the tolerance.
     if ((t.points[i] - t.points[j]).norm() > reach) continue;
-    parent[std::max(i, j)] = std::min(i, j);
+    welded.join(i, j);
   }
   for (Facet& f : t.facets) {
-    for (std::int32_t& v : f) v = root(v);
+    for (std::int32_t& v : f) v = welded.root(v);
   }
   drop_degenerate(t);
 }
@@ -404,7 +375,7 @@ std::size_t split_at_t_vertices(Triangles& t, double tolerance, Notes* notes) {
 
 std::size_t split_fans(Triangles& t, double gap, Notes* notes) {
   const std::size_t corners = 3 * t.facets.size();
-  Union joined(corners), together(t.facets.size());
+  DisjointSets joined(corners), together(t.facets.size());
   std::vector<char> at_fan(t.points.size(), 0);
   std::size_t split = 0;
   const auto join = [&](std::int32_t f, std::int32_t g, const EdgeUse& edge) {
@@ -485,7 +456,7 @@ Result<void> fill_holes(Triangles& t, double limit, Notes* notes) {
     return {};
   }
   constexpr std::size_t kLongest = 400;  // the cost grows with the cube
-  Union together(t.points.size());
+  DisjointSets together(t.points.size());
   for (const Facet& f : t.facets) {
     together.join(f[0], f[1]);
     together.join(f[0], f[2]);

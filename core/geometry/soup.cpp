@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <numbers>
-#include <numeric>
 #include <optional>
+
+#include "core/base/disjoint_sets.h"
 
 namespace lamella {
 namespace {
@@ -52,24 +52,9 @@ std::vector<Shell> collect(const Triangles& t, const Shells& shells) {
   return all;
 }
 
-/// Whether shell `in` lies inside `out`: by the winding number of a facet center of `in` that is
-/// not on `out` itself.
 bool contains(const Triangles& t, const Shell& out, const Shell& in) {
-  if ((in.low.array() < out.low.array()).any() || (in.high.array() > out.high.array()).any()) {
-    return false;
-  }
-  if (std::abs(in.volume) >= std::abs(out.volume)) return false;
-  const std::size_t step = std::max<std::size_t>(1, in.facets.size() / 8);
-  double winding = 0;
-  for (std::size_t k = 0; k < in.facets.size(); k += step) {
-    const Facet& f = t.facets[in.facets[k]];
-    const Vec<3> x = (t.points[f[0]] + t.points[f[1]] + t.points[f[2]]) / 3;
-    winding = 0;
-    for (const std::int32_t g : out.facets) winding += solid_angle(t.corners(g), x);
-    winding = std::abs(winding) / (4 * std::numbers::pi);
-    if (std::abs(winding - 0.5) > 0.25) break;
-  }
-  return winding > 0.5;
+  return (in.low.array() >= out.low.array()).all() && (in.high.array() <= out.high.array()).all() &&
+         std::abs(in.volume) < std::abs(out.volume) && lies_inside(t, in.facets, out.facets);
 }
 
 /// Outer shells get a positive volume, the voids in them a negative one, bodies in voids a positive
@@ -115,23 +100,10 @@ Result<void> nest(Triangles& t, std::vector<Shell>& shells, Notes* notes,
 }
 
 ReferenceSurface<3> extract(const Triangles& t, const std::vector<const Shell*>& shells) {
-  ReferenceSurface<3> surface;
   std::vector<std::int32_t> facets;
   for (const Shell* s : shells) facets.insert(facets.end(), s->facets.begin(), s->facets.end());
   std::sort(facets.begin(), facets.end());
-  std::vector<std::int32_t> id(t.points.size(), -1);
-  for (const std::int32_t f : facets) {
-    Facet mine = t.facets[f];
-    for (std::int32_t& v : mine) {
-      if (id[v] < 0) {
-        id[v] = static_cast<std::int32_t>(surface.points.size());
-        surface.points.push_back(t.points[v]);
-      }
-      v = id[v];
-    }
-    surface.facets.push_back(mine);
-  }
-  return surface;
+  return plain_surface(subset(t, facets));
 }
 
 Result<void> repair(Triangles& t, double size, const SoupParams& params, Notes* notes,
@@ -287,6 +259,12 @@ double enclosed_measure(const ReferenceSurface<D>& surface) {
   return sum / factorial(D);
 }
 
+double facet_area(const ReferenceSurface<3>& surface, std::size_t facet) {
+  const auto& f = surface.facets[facet];
+  return 0.5 *
+         facet_normal<3>({surface.points[f[0]], surface.points[f[1]], surface.points[f[2]]}).norm();
+}
+
 template <int D>
 Result<void> check_closed(const ReferenceSurface<D>& surface) {
   const std::string hint = "Repair the surface so that it encloses a volume.";
@@ -340,7 +318,6 @@ template Result<void> check_closed<2>(const ReferenceSurface<2>&);
 template Result<void> check_closed<3>(const ReferenceSurface<3>&);
 
 void find_features(ReferenceSurface<3>& surface, double angle) {
-  constexpr double kKink = 0.6;
   std::vector<Vec<3>> normals(surface.facets.size());
   for (std::size_t f = 0; f < surface.facets.size(); ++f) {
     std::array<Vec<3>, 3> p;
@@ -361,21 +338,12 @@ void find_features(ReferenceSurface<3>& surface, double angle) {
   });
 
   // Patches: facets joined by smooth edges, numbered by their first facet.
-  std::vector<std::int32_t> parent(surface.facets.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t f) {
-    while (parent[f] != f) f = parent[f] = parent[parent[f]];
-    return f;
-  };
-  for (const auto& [f, g] : smooth) {
-    const std::int32_t i = root(f);
-    const std::int32_t j = root(g);
-    parent[std::max(i, j)] = std::min(i, j);
-  }
+  DisjointSets patches(surface.facets.size());
+  for (const auto& [f, g] : smooth) patches.join(f, g);
   surface.facet_face.assign(surface.facets.size(), -1);
   surface.faces.clear();
   for (std::size_t f = 0; f < surface.facets.size(); ++f) {
-    const std::int32_t r = root(static_cast<std::int32_t>(f));
+    const std::int32_t r = patches.root(static_cast<std::int32_t>(f));
     if (surface.facet_face[r] < 0) {
       surface.facet_face[r] = static_cast<std::int32_t>(surface.faces.size());
       surface.faces.emplace_back();
@@ -383,22 +351,28 @@ void find_features(ReferenceSurface<3>& surface, double angle) {
     surface.facet_face[f] = surface.facet_face[r];
   }
 
+  surface.corners = kinks_of_features(surface);
+}
+
+std::vector<std::int32_t> kinks_of_features(const ReferenceSurface<3>& surface) {
+  constexpr double kKink = 0.6;
   std::vector<std::vector<std::int32_t>> along(surface.points.size());
   for (const auto& edge : surface.feature_edges) {
     along[edge[0]].push_back(edge[1]);
     along[edge[1]].push_back(edge[0]);
   }
-  surface.corners.clear();
+  std::vector<std::int32_t> kinks;
   for (std::size_t v = 0; v < along.size(); ++v) {
     if (along[v].empty()) continue;
-    bool corner = along[v].size() != 2;
-    if (!corner) {
+    bool kink = along[v].size() != 2;
+    if (!kink) {
       const Vec<3> in = surface.points[v] - surface.points[along[v][0]];
       const Vec<3> out = surface.points[along[v][1]] - surface.points[v];
-      corner = std::atan2(in.cross(out).norm(), in.dot(out)) > kKink;
+      kink = std::atan2(in.cross(out).norm(), in.dot(out)) > kKink;
     }
-    if (corner) surface.corners.push_back(static_cast<std::int32_t>(v));
+    if (kink) kinks.push_back(static_cast<std::int32_t>(v));
   }
+  return kinks;
 }
 
 }  // namespace lamella

@@ -40,6 +40,9 @@ Result<std::vector<ReferenceSurface<3>>> surfaces_from_triangles(
 template <int D>
 double enclosed_measure(const ReferenceSurface<D>& surface);
 
+/// Area of one facet, mm^2.
+double facet_area(const ReferenceSurface<3>& surface, std::size_t facet);
+
 /// Closedness and winding: ok, or bad_input naming the count and one place of the first finding.
 template <int D>
 Result<void> check_closed(const ReferenceSurface<D>& surface);
@@ -48,5 +51,8 @@ Result<void> check_closed(const ReferenceSurface<D>& surface);
 /// the patches between them, and `corners` the vertices where features end, branch or kink by more
 /// than 0.6 radians.
 void find_features(ReferenceSurface<3>& surface, double angle);
+
+/// The vertices where feature edges end, branch or kink by more than 0.6 radians, rising.
+std::vector<std::int32_t> kinks_of_features(const ReferenceSurface<3>& surface);
 
 }  // namespace lamella

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <numeric>
 
 namespace lamella {
@@ -91,6 +92,47 @@ std::size_t drop_duplicates(Triangles& t) {
   }
   std::size_t f = 0;
   return std::erase_if(t.facets, [&](const Facet&) { return !keep[f++]; });
+}
+
+Triangles subset(const Triangles& t, const std::vector<std::int32_t>& facets) {
+  Triangles part;
+  std::vector<std::int32_t> id(t.points.size(), -1);
+  for (const std::int32_t f : facets) {
+    Facet mine = t.facets[f];
+    for (std::int32_t& v : mine) {
+      if (id[v] < 0) {
+        id[v] = static_cast<std::int32_t>(part.points.size());
+        part.points.push_back(t.points[v]);
+      }
+      v = id[v];
+    }
+    part.facets.push_back(mine);
+  }
+  return part;
+}
+
+ReferenceSurface<3> plain_surface(const Triangles& t) {
+  ReferenceSurface<3> s;
+  s.points = t.points;
+  s.facets = t.facets;
+  s.facet_face.assign(t.facets.size(), 0);
+  s.faces.resize(1);
+  return s;
+}
+
+bool lies_inside(const Triangles& t, const std::vector<std::int32_t>& in,
+                 const std::vector<std::int32_t>& out) {
+  const std::size_t step = std::max<std::size_t>(1, in.size() / 8);
+  double winding = 0;
+  for (std::size_t k = 0; k < in.size(); k += step) {
+    const auto p = t.corners(in[k]);
+    const Vec<3> x = (p[0] + p[1] + p[2]) / 3;
+    winding = 0;
+    for (const std::int32_t f : out) winding += solid_angle(t.corners(f), x);
+    winding = std::abs(winding) / (4 * std::numbers::pi);
+    if (std::abs(winding - 0.5) > 0.25) break;
+  }
+  return winding > 0.5;
 }
 
 EdgeDefects find_edge_defects(const Triangles& t) {

@@ -30,6 +30,17 @@ std::size_t drop_degenerate(Triangles& t);
 /// same winding leave one, but where closed bodies share them. Returns how many went.
 std::size_t drop_duplicates(Triangles& t);
 
+/// Some of the facets, with the vertices that they use.
+Triangles subset(const Triangles& t, const std::vector<std::int32_t>& facets);
+
+/// As a surface of one face without features, which need not be closed.
+ReferenceSurface<3> plain_surface(const Triangles& t);
+
+/// Whether the facets `in` lie inside the closed shell `out`: by the winding number of the middle
+/// of a facet that is not on `out` itself.
+bool lies_inside(const Triangles& t, const std::vector<std::int32_t>& in,
+                 const std::vector<std::int32_t>& out);
+
 struct EdgeDefects {
   std::size_t open = 0;          ///< edges of one facet
   std::size_t non_manifold = 0;  ///< edges of more than two

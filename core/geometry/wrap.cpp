@@ -34,15 +34,6 @@ int edge_between(int a, int b) {
   return -1;
 }
 
-ReferenceSurface<3> plain_surface(const Triangles& t) {
-  ReferenceSurface<3> s;
-  s.points = t.points;
-  s.facets = t.facets;
-  s.facet_face.assign(t.facets.size(), 0);
-  s.faces.resize(1);
-  return s;
-}
-
 /// Windings such that the volume is inside: alike within a shell, and outward for shells that no
 /// other one is around.
 Triangles oriented(const Triangles& in) {
@@ -88,6 +79,16 @@ Triangles oriented(const Triangles& in) {
   return t;
 }
 
+/// Halves of a triangle, cut through its longest edge.
+std::array<std::array<Vec<3>, 3>, 2> halves(const std::array<Vec<3>, 3>& p) {
+  int k = 0;
+  for (int e = 1; e < 3; ++e)
+    if ((p[(e + 1) % 3] - p[e]).squaredNorm() > (p[(k + 1) % 3] - p[k]).squaredNorm()) k = e;
+  const Vec<3>&a = p[k], &b = p[(k + 1) % 3], &c = p[(k + 2) % 3];
+  const Vec<3> m = 0.5 * (a + b);
+  return {{{a, m, c}, {m, b, c}}};
+}
+
 /// The same surface in facets not longer than `longest`, which cluster well: they need not fit
 /// together.
 Triangles chopped(const Triangles& t, double longest) {
@@ -98,22 +99,15 @@ Triangles chopped(const Triangles& t, double longest) {
     while (!todo.empty()) {
       const auto p = todo.back();
       todo.pop_back();
-      int k = 0;
-      double square = 0;
-      for (int e = 0; e < 3; ++e)
-        if (const double l = (p[(e + 1) % 3] - p[e]).squaredNorm(); l > square) {
-          square = l;
-          k = e;
-        }
+      const double square = std::max(
+          {(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
       if (square <= longest * longest) {
         const auto first = static_cast<std::int32_t>(out.points.size());
         out.points.insert(out.points.end(), p.begin(), p.end());
         out.facets.push_back({first, first + 1, first + 2});
         continue;
       }
-      const Vec<3> m = 0.5 * (p[k] + p[(k + 1) % 3]);
-      todo.push_back({p[k], m, p[(k + 2) % 3]});
-      todo.push_back({m, p[(k + 1) % 3], p[(k + 2) % 3]});
+      for (const auto& half : halves(p)) todo.push_back(half);
     }
   }
   return out;
@@ -218,16 +212,7 @@ class Grid {
         const Vec<3> low = (p[0].cwiseMin(p[1]).cwiseMin(p[2]) - origin_) / h;
         const Vec<3> high = (p[0].cwiseMax(p[1]).cwiseMax(p[2]) - origin_) / h;
         if ((high - low).maxCoeff() > 4) {
-          int k = 0;
-          double longest = 0;
-          for (int e = 0; e < 3; ++e)
-            if (const double l = (p[(e + 1) % 3] - p[e]).squaredNorm(); l > longest) {
-              longest = l;
-              k = e;
-            }
-          const Vec<3> m = 0.5 * (p[k] + p[(k + 1) % 3]);
-          todo.push_back({p[k], m, p[(k + 2) % 3]});
-          todo.push_back({m, p[(k + 1) % 3], p[(k + 2) % 3]});
+          for (const auto& half : halves(p)) todo.push_back(half);
           continue;
         }
         std::array<Key, 3> a, b;
@@ -480,13 +465,6 @@ class Surfacer {
       return v >= edge_points && rings_[ring_of_[v - edge_points]].sharp;
     };
     const std::vector<EdgeUse> uses = edge_uses(t.facets);
-    const auto exists = [&](std::int32_t i, std::int32_t j) {
-      const EdgeUse edge{std::min(i, j), std::max(i, j), 0, true};
-      const auto it = std::lower_bound(
-          uses.begin(), uses.end(), edge,
-          [](const EdgeUse& x, const EdgeUse& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
-      return it != uses.end() && it->same_edge(edge);
-    };
     std::unordered_set<Key> made;
     std::vector<char> changed(t.facets.size(), 0);
     for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
@@ -499,7 +477,7 @@ class Surfacer {
         return t.facets[of][0];
       };
       const std::int32_t p = apex(f), q = apex(g);
-      if (p == q || !sharp(p) || !sharp(q) || exists(p, q)) return;
+      if (p == q || !sharp(p) || !sharp(q) || has_edge(uses, p, q)) return;
       if (!made.insert((static_cast<Key>(std::min(p, q)) << 32) | static_cast<Key>(std::max(p, q)))
                .second)
         return;

@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
 #include "core/geometry/locator.h"
 #include "core/mesh/adjacency.h"
@@ -159,23 +160,15 @@ bool below(const Place& place, int asked) { return place.layers < asked - 1e-6; 
 /// Facets below n that share a node are one place.
 std::vector<PlaceBelow> places_below(const Mesh& mesh, const std::vector<Place>& places,
                                      const std::vector<std::int32_t>& counted, int asked) {
-  std::vector<NodeId> parent(mesh.points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](NodeId n) {
-    while (parent[n] != n) n = parent[n] = parent[parent[n]];
-    return n;
-  };
+  DisjointSets together(mesh.points.size());
   for (const auto f : counted)
     if (below(places[f], asked))
-      for (const auto n : mesh.facets[f]) {
-        const NodeId a = root(mesh.facets[f][0]), b = root(n);
-        parent[std::max(a, b)] = std::min(a, b);
-      }
+      for (const auto n : mesh.facets[f]) together.join(mesh.facets[f][0], n);
   std::vector<std::int32_t> index(mesh.points.size(), -1);
   std::vector<PlaceBelow> found;
   for (const auto f : counted) {
     if (!below(places[f], asked)) continue;
-    std::int32_t& i = index[root(mesh.facets[f][0])];
+    std::int32_t& i = index[together.root(mesh.facets[f][0])];
     if (i < 0) {
       i = static_cast<std::int32_t>(found.size());
       found.push_back({Vec<3>::Zero(), std::numeric_limits<double>::infinity(), 0});

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <sstream>
+
+#include "core/base/disjoint_sets.h"
 
 namespace lamella {
 namespace {
@@ -15,12 +16,7 @@ using Facet = std::array<NodeId, D>;
 /// Shell number of each facet, and their count.
 template <int D>
 int number_shells(const std::vector<Facet<D>>& facets, std::vector<int>& shell) {
-  std::vector<int> parent(facets.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets shells(facets.size());
   std::vector<std::pair<std::array<NodeId, D - 1>, int>> edges;
   edges.reserve(facets.size() * D);
   for (int f = 0; f < static_cast<int>(facets.size()); ++f)
@@ -33,12 +29,11 @@ int number_shells(const std::vector<Facet<D>>& facets, std::vector<int>& shell) 
     }
   std::sort(edges.begin(), edges.end());
   for (std::size_t i = 1; i < edges.size(); ++i)
-    if (edges[i].first == edges[i - 1].first)
-      parent[root(edges[i].second)] = root(edges[i - 1].second);
+    if (edges[i].first == edges[i - 1].first) shells.join(edges[i].second, edges[i - 1].second);
   shell.assign(facets.size(), 0);
   std::map<int, int> number;
   for (int f = 0; f < static_cast<int>(facets.size()); ++f)
-    shell[f] = number.try_emplace(root(f), static_cast<int>(number.size())).first->second;
+    shell[f] = number.try_emplace(shells.root(f), static_cast<int>(number.size())).first->second;
   return static_cast<int>(number.size());
 }
 

@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <span>
 
 #include "core/geometry/edge_table.h"
 #include "core/geometry/locator.h"
+#include "core/geometry/soup.h"
 
 namespace lamella {
 
 namespace {
 
 const std::array<std::string, 5> kKinds = {"other", "gate", "vent", "symmetry", "walls"};
-
-/// Radians by which a border may turn at a vertex that need not stay; the same as for a
-/// triangulated surface.
-constexpr double kKink = 0.6;
 
 Error refuse(const BoundaryGroup& group, const std::string& finding, const std::string& hint) {
   return {Code::usage, "Group \"" + group.name + "\": " + finding + ".", hint};
@@ -75,20 +73,10 @@ void sharpen_borders(const std::vector<std::int32_t>& facet_group, ReferenceSurf
     if (edge[0] > edge[1]) std::swap(edge[0], edge[1]);
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  std::vector<std::vector<std::int32_t>> along(surface.points.size());
-  for (const auto& [a, b] : edges) {
-    along[a].push_back(b);
-    along[b].push_back(a);
-  }
-  for (const std::int32_t v : touched) {
-    bool corner = along[v].size() != 2;
-    if (!corner) {
-      const Vec<3>& x = surface.points[v];
-      corner =
-          angle_between(x - surface.points[along[v][0]], surface.points[along[v][1]] - x) > kKink;
-    }
-    if (corner) surface.corners.push_back(v);
-  }
+  std::sort(touched.begin(), touched.end());
+  const std::vector<std::int32_t> kinks = kinks_of_features(surface);
+  std::set_intersection(touched.begin(), touched.end(), kinks.begin(), kinks.end(),
+                        std::back_inserter(surface.corners));
   auto& corners = surface.corners;
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());

@@ -90,14 +90,4 @@ ReferenceSurface<3> boundary_surface(const SimplexMesh<3>& mesh, std::int32_t bo
   return surface;
 }
 
-double box_diagonal(const std::vector<Vec<3>>& points, std::size_t from) {
-  if (points.size() <= from) return 0;
-  Vec<3> low = points[from], high = low;
-  for (std::size_t i = from; i < points.size(); ++i) {
-    low = low.cwiseMin(points[i]);
-    high = high.cwiseMax(points[i]);
-  }
-  return (high - low).norm();
-}
-
 }  // namespace lamella

@@ -20,7 +20,4 @@ ReferenceSurface<3> boundary_surface(const SimplexMesh<3>& mesh, std::int32_t bo
 SimplexMesh<3> extract_body(const SimplexMesh<3>& mesh, std::int32_t body,
                             std::vector<NodeId>* old_id = nullptr);
 
-/// Length of the diagonal of the box around points [from ..), mm.
-double box_diagonal(const std::vector<Vec<3>>& points, std::size_t from = 0);
-
 }  // namespace lamella

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/geometry/triangles.h"
 #include "core/sizing/sizing_field.h"
-#include "core/study/measure.h"
 
 namespace lamella {
 
@@ -79,7 +79,7 @@ NaturalParams natural_params(const Study& study, const Part& part) {
   params.layers2 = settings.layers2;
   params.alpha2 = settings.alpha2;
   params.layers3 = settings.layers3;
-  params.h_min = settings.h_min.value_or(1e-3 * box_diagonal(part.surface.points));
+  params.h_min = settings.h_min.value_or(1e-3 * diagonal_of(part.surface.points));
   params.h_max = settings.h_max.value_or(0);
   params.threads = study.options.threads;
   return params;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/geometry/triangles.h"
 #include "core/mesh/validate.h"
 #include "core/natural/boundary_distance.h"
 #include "core/natural/layer_correction.h"
@@ -53,7 +54,7 @@ class BodyLoop {
         part_(part),
         options_(study.options),
         settings_(settings_of(study, part.name)) {
-    const double diagonal = box_diagonal(part.surface.points);
+    const double diagonal = diagonal_of(part.surface.points);
     outcome_.name = part.name;
     outcome_.layers_asked = settings_.layers;
     outcome_.cad_volume = part.cad_volume;

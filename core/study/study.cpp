@@ -1,7 +1,6 @@
 #include "core/study/study.h"
 
 #include <algorithm>
-#include <set>
 
 namespace lamella {
 
@@ -28,13 +27,17 @@ std::vector<BoundaryGroup> groups_of(const Study& study, const std::string& name
   return groups;
 }
 
-std::vector<Part> study_parts(std::vector<Part> parts, const std::vector<std::string>& left_out) {
-  std::set<std::string> taken;
-  for (Part& part : parts) {
-    const std::string base = part.name;
-    for (int k = 2; !taken.insert(part.name).second; ++k)
-      part.name = base + " (" + std::to_string(k) + ")";
+void number_names(std::vector<Part>& parts, std::size_t first, std::set<std::string> taken) {
+  for (std::size_t k = 0; k < first; ++k) taken.insert(parts[k].name);
+  for (std::size_t k = first; k < parts.size(); ++k) {
+    const std::string base = parts[k].name;
+    for (int n = 2; !taken.insert(parts[k].name).second; ++n)
+      parts[k].name = base + " (" + std::to_string(n) + ")";
   }
+}
+
+std::vector<Part> study_parts(std::vector<Part> parts, const std::vector<std::string>& left_out) {
+  number_names(parts);
   std::erase_if(parts, [&](const Part& part) {
     return std::find(left_out.begin(), left_out.end(), part.name) != left_out.end();
   });

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -75,6 +76,11 @@ BodySettings settings_of(const Study& study, const std::string& name);
 std::vector<SizingObject> sizing_of(const Study& study, const std::string& name);
 /// The groups on the part called `name`: those that name it, and those that name none.
 std::vector<BoundaryGroup> groups_of(const Study& study, const std::string& name);
+
+/// Gives the parts from number `first` on names that neither those before nor `taken` have: a name
+/// that is there gets a number.
+void number_names(std::vector<Part>& parts, std::size_t first = 0,
+                  std::set<std::string> taken = {});
 
 /// The parts of all inputs, in order, as a study calls them: names that were taken get a number,
 /// and the parts that are left out go.

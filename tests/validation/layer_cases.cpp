@@ -9,6 +9,7 @@
 #include "core/base/atomic_file.h"
 #include "core/cad/load_parts.h"
 #include "core/cad/sample_parts.h"
+#include "core/geometry/triangles.h"
 #include "core/mesh/quality.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/natural/layers.h"
@@ -91,7 +92,7 @@ Result<std::string> against_isotropic() {
               grouped(static_cast<std::size_t>(elements)) + ", forecast | - | ";
     } else {
       AdaptParams adapt_params;
-      adapt_params.chord_tolerance = 0.6e-3 * box_diagonal(part.surface.points);
+      adapt_params.chord_tolerance = 0.6e-3 * diagonal_of(part.surface.points);
       const Result<Adapted<3>> isotropic =
           adapt<3>(mesh, asked, &part.surface, adapt_params, {}, even);
       if (!isotropic) return isotropic.error();

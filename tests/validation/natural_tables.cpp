@@ -10,6 +10,7 @@
 #include "core/cad/load_parts.h"
 #include "core/cad/sample_parts.h"
 #include "core/geometry/soup.h"
+#include "core/geometry/triangles.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/natural/layers.h"
 #include "core/natural/natural_metric.h"
@@ -37,7 +38,7 @@ std::string number(double v, int digits = 3) { return short_number(v, digits); }
 NaturalParams natural_of(const Part& part) {
   NaturalParams params;
   params.layers = kLayers;
-  params.h_min = 1e-3 * box_diagonal(part.surface.points);
+  params.h_min = 1e-3 * diagonal_of(part.surface.points);
   return params;
 }
 
@@ -53,7 +54,7 @@ Result<SimplexMesh<3>> start_of(const Part& part) {
 Result<SimplexMesh<3>> adapted(const SimplexMesh<3>& mesh, const MetricField<3>& metric,
                                const Part& part, const MetricFunction<3>& function) {
   AdaptParams params;
-  params.chord_tolerance = 0.6e-3 * box_diagonal(part.surface.points);
+  params.chord_tolerance = 0.6e-3 * diagonal_of(part.surface.points);
   Result<Adapted<3>> next = adapt<3>(mesh, metric, &part.surface, params, {}, function);
   if (!next) return next.error();
   return std::move(next->mesh);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/geometry/soup.h"
 #include "ui/actions/actions.h"
 #include "ui/commands/study_edits.h"
 #include "ui/panels/form.h"
@@ -35,13 +36,7 @@ QToolButton* wide_button(QAction* action) {
 
 double area_of(const ReferenceSurface<3>& s, const std::vector<std::int32_t>& facets) {
   double area = 0;
-  for (const std::int32_t f : facets) {
-    const auto& v = s.facets[static_cast<std::size_t>(f)];
-    const Vec<3>& a = s.points[static_cast<std::size_t>(v[0])];
-    area += 0.5 * (s.points[static_cast<std::size_t>(v[1])] - a)
-                      .cross(s.points[static_cast<std::size_t>(v[2])] - a)
-                      .norm();
-  }
+  for (const std::int32_t f : facets) area += facet_area(s, static_cast<std::size_t>(f));
   return area;
 }
 

@@ -29,13 +29,8 @@ Result<ReadParts> read_parts(const Services& services,
 void name_parts(ReadParts& read, std::size_t first, const std::vector<std::string>& left_out,
                 bool drop_left_out) {
   std::set<std::string> taken;
-  for (std::size_t k = 0; k < first; ++k) taken.insert(read.parts[k].name);
   if (!drop_left_out) taken.insert(left_out.begin(), left_out.end());
-  for (std::size_t k = first; k < read.parts.size(); ++k) {
-    const std::string base = read.parts[k].name;
-    for (int n = 2; !taken.insert(read.parts[k].name).second; ++n)
-      read.parts[k].name = base + " (" + std::to_string(n) + ")";
-  }
+  number_names(read.parts, first, std::move(taken));
   if (!drop_left_out) return;
   for (std::size_t k = read.parts.size(); k-- > first;) {
     if (std::find(left_out.begin(), left_out.end(), read.parts[k].name) == left_out.end()) continue;

@@ -3,7 +3,7 @@
 #include <QSettings>
 #include <algorithm>
 
-#include "core/study/measure.h"
+#include "core/geometry/triangles.h"
 #include "core/study/study_file.h"
 #include "ui/commands/edit_study.h"
 #include "ui/theme.h"
@@ -136,7 +136,7 @@ void Session::select_item(const Item& item) {
 }
 
 double Session::automatic_size(int part) const {
-  return 1e-3 * box_diagonal((*parts_)[static_cast<std::size_t>(part)].surface.points);
+  return 1e-3 * diagonal_of((*parts_)[static_cast<std::size_t>(part)].surface.points);
 }
 
 void Session::set_study(std::shared_ptr<const Study> study) {

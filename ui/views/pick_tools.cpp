@@ -14,7 +14,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/study/measure.h"
+#include "core/geometry/triangles.h"
 #include "ui/actions/actions.h"
 #include "ui/commands/study_edits.h"
 #include "ui/session/session.h"
@@ -142,7 +142,7 @@ bool PickTools::click(const std::optional<Picked>& picked) {
 }
 
 double PickTools::diagonal_of(int part) const {
-  return box_diagonal(session_.parts()[static_cast<std::size_t>(part)].surface.points);
+  return lamella::diagonal_of(session_.parts()[static_cast<std::size_t>(part)].surface.points);
 }
 
 void PickTools::pick_face(const Picked& picked) {
