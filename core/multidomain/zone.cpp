@@ -1,0 +1,270 @@
+#include "core/multidomain/zone.h"
+
+#include <algorithm>
+
+#include "core/geometry/locator.h"
+#include "core/geometry/winding.h"
+
+namespace lamella {
+
+namespace {
+
+template <int D>
+Box<D> everywhere() {
+  Box<D> box;
+  std::swap(box.lo, box.hi);
+  return box;
+}
+
+template <int D>
+class SurfaceZone : public Zone<D> {
+ public:
+  SurfaceZone(const ReferenceSurface<D>& surface, Inside inside) : locator_(surface) {
+    for (const Vec<D>& p : surface.points) box_.add(p);
+    if constexpr (D == 3)
+      if (inside == Inside::winding)
+        winding_ = std::make_unique<WindingNumber>(surface.points, surface.facets);
+  }
+  ZoneDistance<D> at(const Vec<D>& x) const override {
+    if (locator_.empty()) return {};
+    if (!winding_) {
+      const SignedNearest<D> near = locator_.signed_nearest(x);
+      return {near.distance, away(x, near.foot.point, near.distance, near.pseudo_normal)};
+    }
+    const Nearest<D> near = *locator_.nearest(x);
+    double d = std::sqrt(near.distance2);
+    if constexpr (D == 3)
+      if ((*winding_)(x) > 0.5) d = -d;
+    return {d, away(x, near.point, d, locator_.normal(near.facet))};
+  }
+  Box<D> box() const override { return box_; }
+
+ private:
+  static Vec<D> away(const Vec<D>& x, const Vec<D>& foot, double d, const Vec<D>& on_surface) {
+    const Vec<D> to = x - foot;
+    const double length = to.norm();
+    return length > 1e-12 * foot.cwiseAbs().maxCoeff() ? Vec<D>(to / std::copysign(length, d))
+                                                       : on_surface;
+  }
+  Locator<D> locator_;
+  std::unique_ptr<WindingNumber> winding_;
+  Box<D> box_;
+};
+
+template <int D>
+class BallZone : public Zone<D> {
+ public:
+  BallZone(const Vec<D>& center, double radius) : center_(center), radius_(radius) {}
+  ZoneDistance<D> at(const Vec<D>& x) const override {
+    const Vec<D> to = x - center_;
+    return {to.norm() - radius_, to.normalized()};
+  }
+  Box<D> box() const override {
+    Box<D> box;
+    box.add(center_.array() - radius_);
+    box.add(center_.array() + radius_);
+    return box;
+  }
+
+ private:
+  Vec<D> center_;
+  double radius_;
+};
+
+/// What is beyond the point of a convex set nearest to x lies along x - point; inside, the side
+/// with the largest (negative) distance is the nearest.
+template <int D>
+ZoneDistance<D> outside_of(const Vec<D>& beyond) {
+  const double d = beyond.norm();
+  return {d, beyond / d};
+}
+
+template <int D>
+class BoxZone : public Zone<D> {
+ public:
+  BoxZone(const Vec<D>& low, const Vec<D>& high) {
+    box_.add(low);
+    box_.add(high);
+  }
+  ZoneDistance<D> at(const Vec<D>& x) const override {
+    const Vec<D> beyond = x - x.cwiseMax(box_.lo).cwiseMin(box_.hi);
+    if (beyond.squaredNorm() > 0) return outside_of<D>(beyond);
+    ZoneDistance<D> best{-std::numeric_limits<double>::infinity()};
+    for (int k = 0; k < D; ++k) {
+      if (box_.lo[k] - x[k] > best.distance) best = {box_.lo[k] - x[k], -Vec<D>::Unit(k)};
+      if (x[k] - box_.hi[k] > best.distance) best = {x[k] - box_.hi[k], Vec<D>::Unit(k)};
+    }
+    return best;
+  }
+  Box<D> box() const override { return box_; }
+
+ private:
+  Box<D> box_;
+};
+
+template <int D>
+class HalfSpaceZone : public Zone<D> {
+ public:
+  HalfSpaceZone(const Vec<D>& normal, double offset)
+      : normal_(normal.normalized()), offset_(offset / normal.norm()) {}
+  ZoneDistance<D> at(const Vec<D>& x) const override { return {normal_.dot(x) - offset_, normal_}; }
+  Box<D> box() const override { return everywhere<D>(); }
+
+ private:
+  Vec<D> normal_;
+  double offset_;
+};
+
+class CylinderZone : public Zone<3> {
+ public:
+  CylinderZone(const Vec<3>& from, const Vec<3>& to, double radius)
+      : middle_((from + to) / 2),
+        axis_((to - from).normalized()),
+        half_((to - from).norm() / 2),
+        radius_(radius) {}
+  ZoneDistance<3> at(const Vec<3>& x) const override {
+    const double along = axis_.dot(x - middle_);
+    const Vec<3> across = x - middle_ - along * axis_;
+    const double r = across.norm();
+    const Vec<3> out = r > 0 ? Vec<3>(across / r) : axis_.unitOrthogonal();
+    const Vec<3> end = std::copysign(1.0, along) * axis_;
+    const double side = r - radius_, cap = std::abs(along) - half_;
+    if (side > 0 && cap > 0) return outside_of<3>(side * out + cap * end);
+    return side > cap ? ZoneDistance<3>{side, out} : ZoneDistance<3>{cap, end};
+  }
+  Box<3> box() const override {
+    const Vec<3> reach = half_ * axis_.cwiseAbs() +
+                         radius_ * (Vec<3>::Ones() - axis_.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+    Box<3> box;
+    box.add(middle_ - reach);
+    box.add(middle_ + reach);
+    return box;
+  }
+
+ private:
+  Vec<3> middle_, axis_;
+  double half_, radius_;
+};
+
+template <int D>
+class VoronoiZone : public Zone<D> {
+ public:
+  VoronoiZone(const std::vector<Vec<D>>& seeds, std::size_t cell) : seed_(seeds[cell]) {
+    for (std::size_t s = 0; s < seeds.size(); ++s)
+      if (s != cell) others_.push_back(seeds[s]);
+  }
+  ZoneDistance<D> at(const Vec<D>& x) const override {
+    ZoneDistance<D> best{-std::numeric_limits<double>::infinity()};
+    const double own = (x - seed_).squaredNorm();
+    for (const Vec<D>& other : others_) {
+      const Vec<D> between = other - seed_;
+      const double d = (own - (x - other).squaredNorm()) / (2 * between.norm());
+      if (d > best.distance) best = {d, between.normalized()};
+    }
+    return best;
+  }
+  Box<D> box() const override { return everywhere<D>(); }
+
+ private:
+  Vec<D> seed_;
+  std::vector<Vec<D>> others_;
+};
+
+/// The zone of which the distance, times `sign`, is the largest.
+template <int D>
+class ExtremeZone : public Zone<D> {
+ public:
+  ExtremeZone(std::vector<ZonePtr<D>> zones, int sign) : zones_(std::move(zones)), sign_(sign) {}
+  ZoneDistance<D> at(const Vec<D>& x) const override {
+    ZoneDistance<D> best = zones_.front()->at(x);
+    for (std::size_t z = 1; z < zones_.size(); ++z) {
+      const ZoneDistance<D> next = zones_[z]->at(x);
+      if (sign_ * (next.distance - best.distance) > 0) best = next;
+    }
+    return best;
+  }
+  Box<D> box() const override {
+    Box<D> box = sign_ > 0 ? everywhere<D>() : Box<D>{};
+    for (const auto& zone : zones_) {
+      const Box<D> b = zone->box();
+      if (sign_ < 0) {
+        box.add(b);
+      } else {
+        box.lo = box.lo.cwiseMax(b.lo);
+        box.hi = box.hi.cwiseMin(b.hi);
+      }
+    }
+    return box;
+  }
+
+ private:
+  std::vector<ZonePtr<D>> zones_;
+  int sign_;
+};
+
+template <int D>
+class ComplementZone : public Zone<D> {
+ public:
+  explicit ComplementZone(ZonePtr<D> zone) : zone_(std::move(zone)) {}
+  ZoneDistance<D> at(const Vec<D>& x) const override {
+    const ZoneDistance<D> of = zone_->at(x);
+    return {-of.distance, -of.normal};
+  }
+  Box<D> box() const override { return everywhere<D>(); }
+
+ private:
+  ZonePtr<D> zone_;
+};
+
+}  // namespace
+
+template <int D>
+ZonePtr<D> surface_zone(const ReferenceSurface<D>& surface, Inside inside) {
+  return std::make_shared<SurfaceZone<D>>(surface, inside);
+}
+template <int D>
+ZonePtr<D> ball_zone(const Vec<D>& center, double radius) {
+  return std::make_shared<BallZone<D>>(center, radius);
+}
+template <int D>
+ZonePtr<D> box_zone(const Vec<D>& low, const Vec<D>& high) {
+  return std::make_shared<BoxZone<D>>(low, high);
+}
+template <int D>
+ZonePtr<D> half_space_zone(const Vec<D>& normal, double offset) {
+  return std::make_shared<HalfSpaceZone<D>>(normal, offset);
+}
+ZonePtr<3> cylinder_zone(const Vec<3>& from, const Vec<3>& to, double radius) {
+  return std::make_shared<CylinderZone>(from, to, radius);
+}
+template <int D>
+ZonePtr<D> voronoi_zone(const std::vector<Vec<D>>& seeds, std::size_t cell) {
+  return std::make_shared<VoronoiZone<D>>(seeds, cell);
+}
+template <int D>
+ZonePtr<D> intersection_zone(std::vector<ZonePtr<D>> zones) {
+  return std::make_shared<ExtremeZone<D>>(std::move(zones), 1);
+}
+template <int D>
+ZonePtr<D> union_zone(std::vector<ZonePtr<D>> zones) {
+  return std::make_shared<ExtremeZone<D>>(std::move(zones), -1);
+}
+template <int D>
+ZonePtr<D> complement_zone(ZonePtr<D> zone) {
+  return std::make_shared<ComplementZone<D>>(std::move(zone));
+}
+
+#define LAMELLA_INSTANTIATE(D)                                                  \
+  template ZonePtr<D> surface_zone<D>(const ReferenceSurface<D>&, Inside);      \
+  template ZonePtr<D> ball_zone<D>(const Vec<D>&, double);                      \
+  template ZonePtr<D> box_zone<D>(const Vec<D>&, const Vec<D>&);                \
+  template ZonePtr<D> half_space_zone<D>(const Vec<D>&, double);                \
+  template ZonePtr<D> voronoi_zone<D>(const std::vector<Vec<D>>&, std::size_t); \
+  template ZonePtr<D> intersection_zone<D>(std::vector<ZonePtr<D>>);            \
+  template ZonePtr<D> union_zone<D>(std::vector<ZonePtr<D>>);                   \
+  template ZonePtr<D> complement_zone<D>(ZonePtr<D>);
+LAMELLA_INSTANTIATE(2)
+LAMELLA_INSTANTIATE(3)
+#undef LAMELLA_INSTANTIATE
+
+}  // namespace lamella
