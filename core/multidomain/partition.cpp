@@ -2,6 +2,17 @@
 
 namespace lamella {
 
+namespace {
+
+/// Without a sign, the normal towards the other side.
+template <int D>
+ZoneDistance<D> facing(const ZoneDistance<D>& own) {
+  return own.distance < 0 ? ZoneDistance<D>{-own.distance, own.normal}
+                          : ZoneDistance<D>{own.distance, -own.normal};
+}
+
+}  // namespace
+
 template <int D>
 Partition<D>::Partition(std::vector<Region<D>> regions, std::string background)
     : regions_(std::move(regions)), background_(std::move(background)) {
@@ -52,14 +63,27 @@ ZoneDistance<D> Partition<D>::at(int region, const Vec<D>& x, double reach) cons
 template <int D>
 ZoneDistance<D> Partition<D>::border(const Vec<D>& x, double reach) const {
   // What contains x must be left before any other border is met.
-  ZoneDistance<D> taken;
+  ZoneDistance<D> nearest;
   for (int k = 0; k < background(); ++k) {
     const ZoneDistance<D> own = zone_at(k, x, reach);
-    if (own.distance < 0)
-      return -own.distance < taken.distance ? ZoneDistance<D>{-own.distance, own.normal} : taken;
-    if (own.distance < taken.distance) taken = own;
+    if (std::abs(own.distance) < nearest.distance) nearest = facing(own);
+    if (own.distance < 0) break;
   }
-  return taken;
+  return nearest;
+}
+
+template <int D>
+void Partition<D>::borders(const Vec<D>& x, double reach, std::vector<Border<D>>& found) const {
+  found.clear();
+  for (int k = 0; k < background(); ++k) {
+    const ZoneDistance<D> own = zone_at(k, x, reach);
+    if (std::abs(own.distance) >= reach) continue;
+    const Vec<D> foot = x - own.distance * own.normal;
+    const double rounding = 1e-9 * (1 + x.cwiseAbs().maxCoeff());
+    bool hidden = false;
+    for (int j = 0; j < k && !hidden; ++j) hidden = zone_at(j, foot, 0).distance < -rounding;
+    if (!hidden) found.push_back({k, facing(own)});
+  }
 }
 
 template class Partition<2>;

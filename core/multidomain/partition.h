@@ -4,6 +4,13 @@
 
 namespace lamella {
 
+/// A border between regions near a point.
+template <int D>
+struct Border {
+  int zone = -1;       ///< whose boundary it is
+  ZoneDistance<D> of;  ///< distance >= 0, the normal towards the other side
+};
+
 /// A named subdomain of a partition.
 template <int D>
 struct Region {
@@ -33,14 +40,17 @@ class Partition {
   ZoneDistance<D> at(int region, const Vec<D>& x,
                      double reach = std::numeric_limits<double>::infinity()) const;
   double distance(int region, const Vec<D>& x) const { return at(region, x).distance; }
-  /// Distance (>= 0) to the nearest border between two regions, with its normal; beyond `reach` a
-  /// lower bound.
+  /// Distance (>= 0) to the nearest border between two regions, the normal towards its other side;
+  /// beyond `reach` a lower bound.
   ZoneDistance<D> border(const Vec<D>& x,
                          double reach = std::numeric_limits<double>::infinity()) const;
+  /// The borders of all zones nearer than `reach`, each once, unless hidden under a region of
+  /// higher priority; the normals as those of `border`. `found` is overwritten.
+  void borders(const Vec<D>& x, double reach, std::vector<Border<D>>& found) const;
+  /// Signed distance of the zone itself. Beyond its box by more than `reach` a lower bound.
+  ZoneDistance<D> zone_at(int region, const Vec<D>& x, double reach) const;
 
  private:
-  ZoneDistance<D> zone_at(int k, const Vec<D>& x, double reach) const;
-
   std::vector<Region<D>> regions_;
   std::string background_;
   std::vector<Box<D>> boxes_;

@@ -57,7 +57,8 @@ class BallZone : public Zone<D> {
   BallZone(const Vec<D>& center, double radius) : center_(center), radius_(radius) {}
   ZoneDistance<D> at(const Vec<D>& x) const override {
     const Vec<D> to = x - center_;
-    return {to.norm() - radius_, to.normalized()};
+    const double r = to.norm();
+    return {r - radius_, r > 0 ? Vec<D>(to / r) : Vec<D>::UnitX()};
   }
   Box<D> box() const override {
     Box<D> box;
