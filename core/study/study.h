@@ -10,6 +10,7 @@
 #include "core/natural/detector.h"
 #include "core/sizing/sizing_object.h"
 #include "core/study/group.h"
+#include "core/study/zone_entry.h"
 
 namespace lamella {
 
@@ -64,6 +65,8 @@ struct Study {
   std::vector<StudyInput> inputs;
   std::vector<std::string> left_out;  ///< parts of the inputs, by name, that are not meshed
   std::vector<BodySettings> bodies;   ///< by part name; a part without an entry gets the defaults
+  std::vector<StudyZone> zones;       ///< further bodies, by formula; names differ
+  std::optional<StudyDomain> domain;  ///< what one mesh of all bodies fills; unset: one mesh a body
   StudyOptions options;
   std::vector<SizingObject> sizing;   ///< on top of the natural metric, in this order
   std::vector<BoundaryGroup> groups;  ///< named parts of the boundary

@@ -9,7 +9,7 @@
 namespace lamella {
 
 /// A study as plain JSON, schema version 1: name, unit ("mm"), inputs (relative to the study's
-/// folder), bodies, options, sizing, groups and cuts, named as the members of Study. What is unset
+/// folder), bodies, zones, domain, options, sizing, groups and cuts, named as the members of Study. What is unset
 /// is left out.
 std::string study_to_json(const Study& study);
 

@@ -186,6 +186,84 @@ TEST(StudyFile, EveryMistakeOfASizingObjectIsNamed) {
   EXPECT_FALSE(study_from_json(R"({"schema": 1, "sizing": 3})", "bad.json").ok());
 }
 
+Study zoned_study() {
+  Study study;
+  study.zones = {
+      {"ball \"a\"", ZoneBall{{0.1, -2, 1e-7}, 0.5}}, {"mold", ZoneBox{{-1, -2, -3}, {1, 2, 3.5}}},
+      {"pin", ZoneCylinder{{0, 0, 0}, {0, 3, 9}, 2}}, {"below", ZoneHalfSpace{{0, 1, -2}, -0.25}},
+      {"grain 1", ZoneCell{{1, 2, 3}, ""}},           {"grain 2", ZoneCell{{3, 2, 3}, ""}},
+      {"other 1", ZoneCell{{1, 2, 3}, "others"}}};
+  study.bodies = {{"pin", 7}};
+  return study;
+}
+
+TEST(StudyFile, ZonesAndDomainsReadBackAsWritten) {
+  Study study = zoned_study();
+  EXPECT_FALSE(study_from_json(study_to_json(study), "s")->domain.has_value());
+  for (const StudyDomain& domain :
+       {StudyDomain{DomainBodies{}}, StudyDomain{ZoneBox{{0, 1, 2}, {3, 4, 5}}},
+        StudyDomain{ZoneCylinder{{0, 0, 1}, {0, 0, 9}, 3}}, StudyDomain{DomainMargin{0.25}},
+        StudyDomain{DomainBody{"mold"}}}) {
+    study.domain = domain;
+    const Result<Study> back = study_from_json(study_to_json(study), "s");
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    EXPECT_EQ(back->zones, study.zones);
+    EXPECT_EQ(back->domain, study.domain);
+    EXPECT_EQ(study_to_json(*back), study_to_json(study));
+  }
+  EXPECT_EQ(settings_of(study, study.zones[2].name).layers, 7);
+}
+
+TEST(StudyFile, EveryMistakeOfAZoneIsNamed) {
+  const std::string ball = R"({"name": "b", "shape": "ball", "center": [0, 0, 0], "radius": 1})";
+  const std::string cell = R"("shape": "voronoi", "seed": [1, 2, 3]})";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {R"("zones": {})", "zones"},
+      {R"("zones": [3])", "zones[0]"},
+      {R"("zones": [{"shape": "ball", "center": [0, 0, 0], "radius": 1}])", "zones[0].name"},
+      {R"("zones": [{"name": "b"}])", "zones[0].shape"},
+      {R"("zones": [{"name": "b", "shape": "sphere"}])", "zones[0].shape"},
+      {R"("zones": [{"name": "b", "shape": "ball", "radius": 1}])", "zones[0].center"},
+      {R"("zones": [{"name": "b", "shape": "ball", "center": [0, 0, 0]}])", "zones[0].radius"},
+      {R"("zones": [{"name": "b", "shape": "ball", "center": [0, 0], "radius": 1}])",
+       "zones[0].center"},
+      {R"("zones": [{"name": "b", "shape": "ball", "center": [0, 0, 0], "radius": 0}])",
+       "zones[0].radius"},
+      {R"("zones": [{"name": "b", "shape": "box", "low": [0, 0, 0], "high": [1, 0, 1]}])",
+       "zones[0].high"},
+      {R"("zones": [{"name": "b", "shape": "cylinder", "from": [1, 0, 0], "to": [1, 0, 0],
+                     "radius": 1}])",
+       "zones[0].to"},
+      {R"("zones": [{"name": "b", "shape": "half_space", "normal": [0, 0, 0], "offset": 1}])",
+       "zones[0].normal"},
+      {R"("zones": [{"name": "b", "shape": "half_space", "normal": [1, 0, 0]}])",
+       "zones[0].offset"},
+      {R"("zones": [{"name": "b", "shape": "half_space", "normal": [1, 0, 0], "offset": "0"}])",
+       "zones[0].offset"},
+      {R"("zones": [{"name": "b", "shape": "voronoi"}])", "zones[0].seed"},
+      {R"("zones": [{"name": "b", "shape": "voronoi", "seed": [1, 2, 3], "set": 1}])",
+       "zones[0].set"},
+      {R"("zones": [{"name": "b", "shape": "voronoi", "seed": [1, 2, 3], "radius": 1}])",
+       "zones[0].radius"},
+      {"\"zones\": [" + ball + ", " + ball + "]", "zones[1]"},
+      {R"("zones": [{"name": "a", )" + cell + R"(, {"name": "b", )" + cell + "]", "zones[1]"},
+      {R"("domain": "box")", "domain"},
+      {R"("domain": {"shape": "ball"})", "domain.shape"},
+      {R"("domain": {"shape": "box", "low": [0, 0, 0]})", "domain.high"},
+      {R"("domain": {"shape": "cylinder", "from": [0, 0, 0], "to": [0, 0, 1], "radius": -1})",
+       "domain.radius"},
+      {R"("domain": {"shape": "margin", "share": 0})", "domain.share"},
+      {R"("domain": {"shape": "body"})", "domain.body"},
+      {R"("domain": {"shape": "none", "share": 1})", "domain.share"}};
+  for (const auto& [text, named] : cases) {
+    const Result<Study> study = study_from_json(R"({"schema": 1, )" + text + "}", "bad.json");
+    ASSERT_FALSE(study.ok()) << text;
+    EXPECT_EQ(study.error().code, Code::bad_input);
+    EXPECT_NE(study.error().message.find("\"" + named + "\""), std::string::npos)
+        << study.error().message;
+  }
+}
+
 TEST(StudyFile, LeftOutMeansDefault) {
   const Result<Study> study = study_from_json(R"({"schema": 1, "bodies": [{"name": "a"}]})", "s");
   ASSERT_TRUE(study.ok());
