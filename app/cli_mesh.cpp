@@ -5,6 +5,7 @@
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
+#include "app/cli_domain.h"
 #include "app/cli_groups.h"
 #include "app/cli_sizing.h"
 #include "core/mesh/validate.h"
@@ -44,7 +45,7 @@ Result<Request> request_of(const MeshCommand& c) {
     }
     request.study = std::move(*study);
     request.files = input_files(request.study, fs::path(c.inputs.front()).parent_path());
-    if (request.files.empty())
+    if (request.files.empty() && request.study.zones.empty())
       return Error{Code::bad_input, "\"" + c.inputs.front() + "\": the study names no inputs.",
                    "Add the parts to \"inputs\"."};
   } else {
@@ -63,6 +64,15 @@ Result<Request> request_of(const MeshCommand& c) {
   if (c.progressive) o.progressive = true;
   if (c.memory) o.memory = c.memory;
   if (c.detector) o.detector = detector_from_name(*c.detector).value_or(o.detector);
+  if (c.domain) {
+    Result<StudyDomain> domain = domain_of(*c.domain);
+    if (!domain) return domain.error();
+    request.study.domain = std::move(*domain);
+  }
+  if (!request.study.domain && (c.interfaces || c.interface_size || c.capture))
+    return Error{Code::usage, "Interfaces are of one mesh of all bodies.", "Add a --domain."};
+  if (c.interfaces) o.interfaces = *c.interfaces == "fuzzy" ? Interfaces::fuzzy : Interfaces::exact;
+  if (c.capture) o.capture = *c.capture == "gradient" ? Capture::gradient : Capture::distance;
   Result<std::vector<SizingObject>> sizing = sizing_of(c);
   if (!sizing) return sizing.error();
   std::move(sizing->begin(), sizing->end(), std::back_inserter(request.study.sizing));
@@ -76,9 +86,12 @@ Result<Request> request_of(const MeshCommand& c) {
 
 /// Options of the command line hold for every body.
 void apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study& study) {
+  std::vector<std::string> names;
+  for (const Part& part : parts) names.push_back(part.name);
+  for (const StudyZone& zone : study.zones) names.push_back(zone.name);
   std::vector<BodySettings> bodies;
-  for (const Part& part : parts) {
-    BodySettings body = settings_of(study, part.name);
+  for (const std::string& name : names) {
+    BodySettings body = settings_of(study, name);
     if (c.layers) body.layers = *c.layers;
     if (c.alpha) body.alpha = *c.alpha;
     if (c.layers2) body.layers2 = c.layers2;
@@ -86,8 +99,11 @@ void apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study
     if (c.layers3) body.layers3 = c.layers3;
     if (c.h_min) body.h_min = c.h_min;
     if (c.h_max) body.h_max = c.h_max;
+    if (c.interface_size) body.interface_size = c.interface_size;
     bodies.push_back(std::move(body));
   }
+  for (const BodySettings& other : study.bodies)
+    if (std::count(names.begin(), names.end(), other.name) == 0) bodies.push_back(other);
   study.bodies = std::move(bodies);
 }
 
@@ -102,7 +118,13 @@ void tell_iteration(const IterationRecord& r, Console& console) {
   std::snprintf(line, sizeof line, "%3d %10s %10s   %11.2f %7.2f   %12.3f %7.3f %6.1f s",
                 r.iteration, grouped(r.nodes).c_str(), grouped(r.elements).c_str(), r.layers.mean,
                 r.layers.p5, r.quality_mean, r.quality_min, r.seconds);
-  console.say(line);
+  std::string text = line;
+  if (r.mixed > 0) {
+    std::snprintf(line, sizeof line, "   %s mixed, interface error %.4f", grouped(r.mixed).c_str(),
+                  r.interface_error);
+    text += line;
+  }
+  console.say(text);
   if (!console.json()) return;
   Json json = Json::parse(record_json(r));
   json["phase"] = "iteration";

@@ -194,6 +194,28 @@ void add_groups(CLI::App* m, MeshCommand& mesh) {
       ->allow_extra_args(false);
 }
 
+void add_domain(CLI::App* m, MeshCommand& mesh) {
+  m->add_option("--domain", mesh.domain,
+                "One mesh of all bodies, in this domain: bodies (their union), margin[=SHARE] (a "
+                "box around them, grown by a share of its diagonal), body=NAME (one of them, the "
+                "others lie in it), box=X,Y,Z,X,Y,Z or cylinder=X,Y,Z,X,Y,Z,R [a mesh a body]")
+      ->option_text("TEXT");
+  m->add_option("--interfaces", mesh.interfaces,
+                "Borders between bodies in one mesh: on its faces (exact), or inside of thin "
+                "elements that bodies fill in part (fuzzy) [exact]")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"exact", "fuzzy"}));
+  m->add_option("--interface-size", mesh.interface_size,
+                "Size across borders, mm [a quarter of the thinnest layer]")
+      ->option_text("X")
+      ->check(CLI::PositiveNumber);
+  m->add_option("--capture", mesh.capture,
+                "What draws the mesh together at fuzzy borders: their distance, or the gradient of "
+                "the filling ratio [distance]")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"distance", "gradient"}));
+}
+
 }  // namespace
 
 double unit_factor(const std::string& unit) { return kUnits.at(unit); }
@@ -284,6 +306,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
                 "neighborhoods grown in the mesh (neighborhood) [geometric]")
       ->option_text("NAME")
       ->check(CLI::IsMember({"geometric", "neighborhood"}));
+  add_domain(m, mesh);
   m->add_option("--report", mesh.report, "Stem of the report: STEM.json and STEM.html [OUT.report]")
       ->option_text("STEM");
   add_json(m, mesh.json);

@@ -30,6 +30,8 @@ struct MeshCommand {
   std::optional<double> wrap_spacing;
   std::string mesher = "auto";
   std::optional<std::string> detector;
+  std::optional<std::string> domain, interfaces, capture;
+  std::optional<double> interface_size;
   std::string report;
   bool json = false;
 };

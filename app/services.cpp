@@ -101,6 +101,18 @@ Result<ExportCertificate> export_stl(const fs::path& file, const MeshState& stat
                  summary_of(*back), false, 1e-4);
 }
 
+/// The filling ratio of each body, "filling NAME".
+std::vector<ElementField> filling_fields(const MeshState& state) {
+  std::vector<ElementField> fields;
+  for (std::size_t b = 0; b < state.mesh.bodies.size(); ++b) {
+    ElementField field{"filling " + state.mesh.bodies[b], {}};
+    for (std::size_t e = 0; e < state.mesh.elements.size(); ++e)
+      field.values.push_back(state.filling->ratio(e, static_cast<std::int32_t>(b)));
+    fields.push_back(std::move(field));
+  }
+  return fields;
+}
+
 }  // namespace
 
 Result<std::vector<Part>> load_all(const std::vector<fs::path>& files, const Study& study,
@@ -165,6 +177,7 @@ Result<ExportCertificate> export_mesh(const fs::path& file, const MeshState& sta
   if (!state.layers.empty()) fields.layers = &state.layers;
   if (!state.quality.empty()) fields.quality = &state.quality;
   const std::string ending = ending_of(file);
+  if (state.filling && ending == ".vtu") fields.of_elements = filling_fields(state);
   Result<ExportCertificate> proof = ending == ".msh"   ? export_msh(file, state, fields, progress)
                                     : ending == ".vtu" ? export_vtu(file, state, fields, progress)
                                     : ending == ".mesh"

@@ -1,10 +1,17 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/metric/metric.h"
 
 namespace lamella {
+
+/// A number for each element, by name.
+struct ElementField {
+  std::string name;
+  std::vector<double> values;  ///< [element]
+};
 
 /// Fields to be written beside a mesh of tetrahedra; a null pointer is left out. Borrowed, never
 /// owned. Node fields are indexed by NodeId, entry 0 is the virtual node.
@@ -13,6 +20,7 @@ struct MeshFields {
   const std::vector<double>* thickness = nullptr;  ///< [node] mm
   const std::vector<double>* layers = nullptr;     ///< [node] measured; NaN where not
   const std::vector<double>* quality = nullptr;    ///< [element] c(T), eq. (3.7)
+  std::vector<ElementField> of_elements{};         ///< further ones; VTU only
 };
 
 }  // namespace lamella

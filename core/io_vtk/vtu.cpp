@@ -113,14 +113,15 @@ void fill(vtkUnstructuredGrid* grid, const SimplexMesh<3>& mesh, const MeshField
   add_ids("body", &mesh.element_body, nullptr);
   add_ids("group", nullptr, &mesh.facet_group);
   add_ids("face", nullptr, &mesh.facet_face);
-  if (fields.quality) {
+  const auto add_numbers = [&](const std::string& name, const std::vector<double>& of_element) {
     vtkNew<vtkDoubleArray> array;
-    array->SetName("quality");
+    array->SetName(name.c_str());
     array->SetNumberOfValues(cells);
-    for (vtkIdType c = 0; c < cells; ++c)
-      array->SetValue(c, c < tets ? (*fields.quality)[c] : kNan);
+    for (vtkIdType c = 0; c < cells; ++c) array->SetValue(c, c < tets ? of_element[c] : kNan);
     grid->GetCellData()->AddArray(array);
-  }
+  };
+  if (fields.quality) add_numbers("quality", *fields.quality);
+  for (const ElementField& field : fields.of_elements) add_numbers(field.name, field.values);
   add_node_scalar(grid, "thickness", fields.thickness);
   add_node_scalar(grid, "layers", fields.layers);
   add_metric(grid, fields.metric);

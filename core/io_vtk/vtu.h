@@ -12,7 +12,7 @@ namespace lamella {
 /// VTK unstructured grid (XML): the tetrahedra, then the boundary triangles.
 ///
 /// Cell arrays, Int32: `body` (-1 on triangles), `group` and `face` (-1 on tetrahedra); `quality`
-/// is NaN on triangles. Point arrays: `metric` (active tensors, XX YY ZZ XY YZ XZ, mm^-2),
+/// and further fields of elements are NaN on triangles. Point arrays: `metric` (active tensors, XX YY ZZ XY YZ XZ, mm^-2),
 /// `thickness` (mm), `layers`. Field arrays of strings: `body_names`, `group_names`, `unit`,
 /// `generator`. Errors: io; cancelled. Nothing is left behind on failure.
 Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,

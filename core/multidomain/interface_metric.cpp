@@ -36,28 +36,47 @@ Mat<D> outer(const Vec<D>& v) {
   return v * v.transpose();
 }
 
+/// The intersection (A.1.3.2) of a metric with v v^T, which asks for the size 1/|v| along v alone.
+template <int D>
+void intersect_with(const Vec<D>& v, Metric<D>& m) {
+  const double ratio = v.dot(m.llt().solve(v));
+  if (ratio > 1) m += (1 - 1 / ratio) * outer<D>(v);
+}
+
 /// What a border with unit normal n at x asks along itself: an element of the size h across does
 /// not bend out of the border, which takes a size of sqrt(8 s h / kappa) where it is curved by
 /// kappa, with the sagitta s h. The curvature is that over the length of an element.
 template <int D>
-Mat<D> along_border(const Zone<D>& zone, const Vec<D>& x, const Vec<D>& n, const Metric<D>& natural,
-                    double h) {
-  constexpr double sagitta = 1;  // of the size across
-  Mat<D> frame = Mat<D>::Identity();
+void follow_border(const Zone<D>& zone, const Vec<D>& x, const ZoneDistance<D>& border,
+                   const Metric<D>& natural, double least, double slope, double h,
+                   Metric<D>& metric) {
+  constexpr double sagitta = 1;   // of the size across
+  constexpr double kSharp = 0.8;  // cosine between faces at an edge
+  const Vec<D>& n = border.normal;
+  const Vec<D> foot = x + border.distance * n;
+  const Vec<D> outward = zone.at(foot - 1e-3 * least * n).distance < 0 ? n : Vec<D>(-n);
+  Mat<D> tangents = Mat<D>::Identity();
   if constexpr (D == 2) {
-    frame.col(0) = Vec<D>(-n[1], n[0]);
+    tangents.col(0) = Vec<D>(-n[1], n[0]);
   } else {
-    frame.col(0) = n.unitOrthogonal();
-    frame.col(1) = n.cross(Vec<D>(frame.col(0)));
+    tangents.col(0) = n.unitOrthogonal();
+    tangents.col(1) = n.cross(Vec<D>(tangents.col(0)));
   }
-  const Mat<D> tangents = frame;
   Mat<D> bent = Mat<D>::Zero();
   for (int j = 0; j + 1 < D; ++j) {
     const Vec<D> t = tangents.col(j);
     double step = 0.5 / std::sqrt(t.dot(natural * t));
     for (int round = 0; round < 2; ++round) {
-      const Vec<D> turn = zone.at(x + step * t).normal - zone.at(x - step * t).normal;
-      bent.col(j) = turn / (2 * step);
+      const std::array<Vec<D>, 2> beside{foot + step * t, foot - step * t};
+      const std::array<ZoneDistance<D>, 2> at{zone.at(beside[0]), zone.at(beside[1])};
+      for (int side = 0; side < 2; ++side) {
+        if (at[side].normal.dot(outward) > kSharp) continue;
+        // Beyond an edge the other face is a border too, as far as the edge is.
+        const Vec<D> corner = beside[side] - at[side].distance * at[side].normal;
+        const double away = std::abs(t.dot(corner - x));
+        intersect_with<D>(t / (3 * least + 3 * slope * away), metric);
+      }
+      bent.col(j) = (at[0].normal - at[1].normal) / (2 * step);
       const double size = std::sqrt(8 * sagitta * h / std::max(bent.col(j).norm(), 1e-300));
       if (size > step) break;
       step = std::max(h, size / 2);
@@ -67,12 +86,11 @@ Mat<D> along_border(const Zone<D>& zone, const Vec<D>& x, const Vec<D>& n, const
       (tangents.transpose() * bent).template topLeftCorner<D - 1, D - 1>();
   shape = (0.5 * (shape + shape.transpose())).eval();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D - 1, D - 1>> solver(shape);
-  Mat<D> asked = Mat<D>::Zero();
   for (int a = 0; a + 1 < D; ++a) {
     const Vec<D> along = tangents.template leftCols<D - 1>() * solver.eigenvectors().col(a);
-    asked += std::abs(solver.eigenvalues()[a]) / (8 * sagitta * h) * outer<D>(along);
+    intersect_with<D>(std::sqrt(std::abs(solver.eigenvalues()[a]) / (8 * sagitta * h)) * along,
+                      metric);
   }
-  return asked;
 }
 
 /// Eigenvalues above `largest` lowered to it.
@@ -246,8 +264,8 @@ MetricFunction<D> interface_metric_at(const Partition<D>& partition, MetricFunct
       const double least = std::min(own, h_min[partition.region_of(beyond)]);
       const double h = least + slope * std::max(0.0, border.distance - 2 * least);
       strongest = std::max(strongest, eigenvalue_from_size(h));
-      metric += eigenvalue_from_size(h) * outer<D>(border.normal);
-      metric += along_border<D>(partition.zone(zone), foot, border.normal, inside, h);
+      intersect_with<D>(border.normal / h, metric);
+      follow_border<D>(partition.zone(zone), x, border, inside, least, slope, h, metric);
     }
     return clipped<D>(metric, strongest);
   };

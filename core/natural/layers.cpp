@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/locator.h"
 #include "core/mesh/adjacency.h"
+#include "core/mesh/element_locator.h"
 #include "core/metric/metric.h"
 #include "core/natural/medial_ball.h"
 
@@ -17,6 +18,7 @@ constexpr double kParallel = 0.82;  // cosine of 35 degrees: walls less inclined
 // Of the thickness: longer segments do not cross the wall. Walls inclined by 35 degrees come
 // to 1.11.
 constexpr double kThin = 1.15;
+constexpr double kSampleSpacing = 0.02;  // of the diagonal, between places within a mesh
 
 using Mesh = SimplexMesh<3>;
 
@@ -63,19 +65,24 @@ struct Neighbors {
   }
 };
 
-/// A straight walk through the mesh, from a facet to the boundary beyond.
+/// A straight walk through the mesh.
 struct Walk {
   std::vector<std::int32_t> crossed;
   double length = 0;        ///< mm
   double layers = 0;        ///< length in the metrics of the elements crossed
-  std::int32_t facet = -1;  ///< reached; -1: the walk failed
+  std::int32_t facet = -1;  ///< of the boundary reached; -1: the walk failed or ended before
+  bool whole = false;       ///< it came to the boundary of its body or to its end
 };
 
-Walk walk(const Mesh& mesh, const Neighbors& neighbors, std::int32_t from, const Vec<3>& origin,
-          const Vec<3>& u) {
+/// From `origin` in the element, into which it came through the face opposite to vertex `entered`
+/// (-1: it began inside), along the unit vector u. To the boundary of the body, or without regard
+/// to bodies for `until` mm.
+Walk walk(const Mesh& mesh, const Neighbors& neighbors, std::int32_t element, int entered,
+          const Vec<3>& origin, const Vec<3>& u,
+          double until = std::numeric_limits<double>::infinity()) {
   Walk w;
-  auto [element, entered] = neighbors.owner[from];
-  const auto body = mesh.element_body.empty() ? 0 : mesh.element_body[element];
+  const bool one_body = !std::isfinite(until) && !mesh.element_body.empty();
+  const auto body = one_body ? mesh.element_body[element] : 0;
   double t = 0;
   // A line meets an element once; more steps than that means it runs along faces, in a circle.
   const std::size_t limit = 1000 + mesh.elements.size() / 8;
@@ -96,7 +103,7 @@ Walk walk(const Mesh& mesh, const Neighbors& neighbors, std::int32_t from, const
       }
     }
     if (through < 0) return w;
-    leave = std::max(leave, t);
+    leave = std::max(std::min(leave, until), t);
     if (leave > t) {
       // Flat elements have no metric; a line spends no length in them.
       const Vec<3> d = (leave - t) * u;
@@ -105,14 +112,20 @@ Walk walk(const Mesh& mesh, const Neighbors& neighbors, std::int32_t from, const
       t = leave;
     }
     w.crossed.push_back(element);
+    if (t >= until) {
+      w.length = t;
+      w.whole = true;
+      return w;
+    }
     const auto next = neighbors.across[element][through];
     if (next == Neighbors::kOpen) return w;
     if (next < 0) {
       w.facet = -1 - next;
       w.length = t;
+      w.whole = !std::isfinite(until);
       return w;
     }
-    if (!mesh.element_body.empty() && mesh.element_body[next] != body) return w;
+    if (one_body && mesh.element_body[next] != body) return w;
     for (int k = 0; k < 4; ++k)
       if (neighbors.across[next][k] == element) entered = k;
     element = next;
@@ -121,12 +134,16 @@ Walk walk(const Mesh& mesh, const Neighbors& neighbors, std::int32_t from, const
 }
 
 struct Place {
+  Vec<3> at = Vec<3>::Zero();
   bool opposite = false;  ///< the far wall faces this one
   bool thin = false;      ///< and the segment is the local thickness
   double layers = 0;
   double area = 0;
+  std::array<std::int32_t, 3> corners{};  ///< of its facet: places that share one are neighbors
   std::vector<std::int32_t> crossed;
 };
+
+bool below(const Place& place, int asked) { return place.layers < asked - 1e-6; }
 
 Place measure(const Mesh& mesh, const Neighbors& neighbors, const Locator<3>& surface,
               std::int32_t facet) {
@@ -136,12 +153,15 @@ Place measure(const Mesh& mesh, const Neighbors& neighbors, const Locator<3>& su
   place.area = 0.5 * n.norm();
   if (neighbors.owner[facet].element < 0 || !(place.area > 0)) return place;
   const Vec<3> center = (corners[0] + corners[1] + corners[2]) / 3;
+  place.at = center;
+  place.corners = mesh.facets[facet];
   const Vec<3> u = -n.normalized();
 
   // Structured meshes have edges exactly below a center: step aside when the line is caught there.
+  const auto [element, entered] = neighbors.owner[facet];
   Walk w;
   for (int attempt = 0; attempt < 3 && w.facet < 0; ++attempt)
-    w = walk(mesh, neighbors, facet,
+    w = walk(mesh, neighbors, element, entered,
              center + 0.01 * attempt * (corners[attempt % 3] - center) +
                  0.003 * attempt * (corners[(attempt + 1) % 3] - center),
              u);
@@ -155,29 +175,50 @@ Place measure(const Mesh& mesh, const Neighbors& neighbors, const Locator<3>& su
   return place;
 }
 
-bool below(const Place& place, int asked) { return place.layers < asked - 1e-6; }
+/// Inwards from a point on a facet of the surface of a body that the mesh fills and more.
+Place measure_within(const Mesh& mesh, const Neighbors& neighbors,
+                     const ElementLocator<3>& elements, const Locator<3>& surface,
+                     std::int32_t facet, const Vec<3>& at) {
+  Place place;
+  place.at = at;
+  const Vec<3> u = -surface.normal(facet);
+  const double least = 1e-7 * surface.diagonal();
+  const std::optional<RayHit> hit = surface.exit(at, u, least);
+  if (!hit) return place;
+  place.opposite = surface.normal(hit->facet).dot(u) > kParallel;
+  if (!place.opposite) return place;
+  const Located<3> start = elements.locate(at + least * u);
+  if (!start.inside) return place;
+  const Walk w = walk(mesh, neighbors, start.element, -1, at + least * u, u, hit->t - least);
+  place.opposite = w.whole;
+  if (!w.whole) return place;
+  place.layers = w.layers;
+  place.crossed = w.crossed;
+  place.thin = hit->t < kThin * 2 * climb_to_medial_ball(surface, at).radius;
+  return place;
+}
 
-/// Facets below n that share a node are one place.
-std::vector<PlaceBelow> places_below(const Mesh& mesh, const std::vector<Place>& places,
-                                     const std::vector<std::int32_t>& counted, int asked) {
-  DisjointSets together(mesh.points.size());
-  for (const auto f : counted)
-    if (below(places[f], asked))
-      for (const auto n : mesh.facets[f]) together.join(mesh.facets[f][0], n);
-  std::vector<std::int32_t> index(mesh.points.size(), -1);
+/// Places below n that share a corner are one.
+std::vector<PlaceBelow> places_below(const std::vector<Place>& places,
+                                     const std::vector<std::int32_t>& counted, int asked,
+                                     std::size_t corners) {
+  DisjointSets together(corners);
+  for (const auto p : counted)
+    if (below(places[p], asked))
+      for (const auto n : places[p].corners) together.join(places[p].corners[0], n);
+  std::vector<std::int32_t> index(corners, -1);
   std::vector<PlaceBelow> found;
-  for (const auto f : counted) {
-    if (!below(places[f], asked)) continue;
-    std::int32_t& i = index[together.root(mesh.facets[f][0])];
+  for (const auto p : counted) {
+    if (!below(places[p], asked)) continue;
+    std::int32_t& i = index[together.root(places[p].corners[0])];
     if (i < 0) {
       i = static_cast<std::int32_t>(found.size());
       found.push_back({Vec<3>::Zero(), std::numeric_limits<double>::infinity(), 0});
     }
-    found[i].area += places[f].area;
-    if (places[f].layers >= found[i].layers) continue;
-    found[i].layers = places[f].layers;
-    const auto p = mesh.corners(mesh.facets[f]);
-    found[i].at = (p[0] + p[1] + p[2]) / 3;
+    found[i].area += places[p].area;
+    if (places[p].layers >= found[i].layers) continue;
+    found[i].layers = places[p].layers;
+    found[i].at = places[p].at;
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const PlaceBelow& a, const PlaceBelow& b) { return a.area > b.area; });
@@ -213,6 +254,68 @@ LayerStats statistics(const std::vector<Place>& places, const std::vector<std::i
   return stats;
 }
 
+/// What the places say, on the nodes of the elements they cross.
+Layers layers_of(const Mesh& mesh, const std::vector<Place>& places, int asked, std::size_t corners,
+                 bool corners_are_nodes, std::vector<std::int32_t>& counted) {
+  // A body without any wall is measured right through.
+  const bool any_thin =
+      std::any_of(places.begin(), places.end(), [](const Place& p) { return p.thin; });
+  for (std::size_t p = 0; p < places.size(); ++p)
+    if (any_thin ? places[p].thin : places[p].opposite)
+      counted.push_back(static_cast<std::int32_t>(p));
+  Layers layers;
+  layers.stats = statistics(places, counted, asked);
+  layers.below = places_below(places, counted, asked, corners);
+  std::vector<double> weight(mesh.points.size(), 0.0);
+  layers.at_node.assign(mesh.points.size(), 0.0);
+  const auto give = [&](NodeId node, double value) {
+    layers.at_node[node] += value;
+    weight[node] += 1;
+  };
+  for (const auto p : counted) {
+    if (corners_are_nodes)
+      for (const auto node : places[p].corners) give(node, places[p].layers);
+    for (const auto e : places[p].crossed)
+      for (const auto node : mesh.elements[e]) give(node, places[p].layers);
+  }
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    layers.at_node[i] =
+        weight[i] > 0 ? layers.at_node[i] / weight[i] : std::numeric_limits<double>::quiet_NaN();
+  return layers;
+}
+
+/// A point on a facet of a surface that stands for a part of its area.
+struct Sample {
+  std::int32_t facet = 0;
+  Vec<3> at = Vec<3>::Zero();
+  double area = 0;
+};
+
+/// The middles of the pieces of facets cut evenly until none is longer than `spacing`.
+std::vector<Sample> samples_of(const ReferenceSurface<3>& surface, double spacing) {
+  std::vector<Sample> samples;
+  for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+    const auto& v = surface.facets[f];
+    const std::array<Vec<3>, 3> p{surface.points[v[0]], surface.points[v[1]], surface.points[v[2]]};
+    const double area = 0.5 * facet_normal<3>(p).norm();
+    if (!(area > 0)) continue;
+    const double longest =
+        std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
+    const int cuts = std::max(1, static_cast<int>(std::ceil(longest / spacing)));
+    // Rows of upright pieces, and of those upside down between them.
+    const Vec<3> a = (p[1] - p[0]) / cuts, b = (p[2] - p[0]) / cuts;
+    for (int i = 0; i < cuts; ++i)
+      for (int j = 0; i + j < cuts; ++j)
+        for (const double third : {1.0, 2.0}) {
+          if (third > 1 && i + j + 1 >= cuts) continue;
+          samples.push_back({static_cast<std::int32_t>(f),
+                             p[0] + (i + third / 3) * a + (j + third / 3) * b,
+                             area / (cuts * cuts)});
+        }
+  }
+  return samples;
+}
+
 }  // namespace
 
 Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
@@ -230,34 +333,33 @@ Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface
       }))
     return cancelled_error();
 
-  // A body without any wall is measured right through.
-  const bool any_thin =
-      std::any_of(places.begin(), places.end(), [](const Place& p) { return p.thin; });
   std::vector<std::int32_t> counted;
-  for (std::size_t f = 0; f < places.size(); ++f)
-    if (any_thin ? places[f].thin : places[f].opposite)
-      counted.push_back(static_cast<std::int32_t>(f));
-
-  Layers layers;
-  layers.stats = statistics(places, counted, asked);
-  layers.below = places_below(mesh, places, counted, asked);
-  std::vector<double> weight(mesh.points.size(), 0.0);
-  layers.at_node.assign(mesh.points.size(), 0.0);
+  Layers layers = layers_of(mesh, places, asked, mesh.points.size(), true, counted);
   layers.at_facet.assign(mesh.facets.size(), std::numeric_limits<double>::quiet_NaN());
-  const auto give = [&](NodeId node, double value) {
-    layers.at_node[node] += value;
-    weight[node] += 1;
-  };
-  for (const auto f : counted) {
-    layers.at_facet[f] = places[f].layers;
-    for (const auto node : mesh.facets[f]) give(node, places[f].layers);
-    for (const auto e : places[f].crossed)
-      for (const auto node : mesh.elements[e]) give(node, places[f].layers);
-  }
-  for (std::size_t i = 0; i < weight.size(); ++i)
-    layers.at_node[i] =
-        weight[i] > 0 ? layers.at_node[i] / weight[i] : std::numeric_limits<double>::quiet_NaN();
+  for (const auto f : counted) layers.at_facet[f] = places[f].layers;
   return layers;
+}
+
+Result<Layers> measure_layers_within(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
+                                     int asked, int threads, const Progress& progress) {
+  if (asked < 1) return Error{Code::usage, "The number of layers asked must be at least 1.", ""};
+  const Locator<3> locator(surface);
+  if (locator.empty())
+    return Error{Code::bad_input, "The body has no surface to measure its walls on.", ""};
+  const Neighbors neighbors(mesh);
+  const ElementLocator<3> elements(mesh, progress.portion(0, 0.2));
+  if (progress.cancelled()) return cancelled_error();
+  const std::vector<Sample> samples = samples_of(surface, kSampleSpacing * locator.diagonal());
+  std::vector<Place> places(samples.size());
+  if (!parallel_each(places.size(), threads, progress.portion(0.2, 1), [&](std::size_t s) {
+        const Sample& sample = samples[s];
+        places[s] = measure_within(mesh, neighbors, elements, locator, sample.facet, sample.at);
+        places[s].area = sample.area;
+        places[s].corners = surface.facets[sample.facet];
+      }))
+    return cancelled_error();
+  std::vector<std::int32_t> counted;
+  return layers_of(mesh, places, asked, surface.points.size(), false, counted);
 }
 
 }  // namespace lamella

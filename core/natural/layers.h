@@ -39,4 +39,10 @@ struct Layers {
 Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
                               int asked, int threads = 0, const Progress& progress = {});
 
+/// The same for a body that lies anywhere in the mesh, its surface crossing elements: from points
+/// on `surface`, no farther apart than a fiftieth of its diagonal, to the wall of `surface`
+/// beyond. What lies outside of the mesh does not count; `at_facet` stays empty.
+Result<Layers> measure_layers_within(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
+                                     int asked, int threads = 0, const Progress& progress = {});
+
 }  // namespace lamella

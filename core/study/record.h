@@ -22,6 +22,8 @@ struct IterationRecord {
   double seconds = 0;          ///< wall time of this iteration
   double forecast_nodes = 0;   ///< of the mesh at the end; 0 where nothing was forecast
   double forecast_memory = 0;  ///< MB its adaption takes
+  std::size_t mixed = 0;       ///< elements that more than one body fills
+  double interface_error = 0;  ///< largest relative L2 error (6.12) of a body's filling ratio
 };
 
 }  // namespace lamella

@@ -11,14 +11,21 @@ Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
   const auto usage = [](const std::string& message, const std::string& hint) {
     return Error{Code::usage, message, hint};
   };
-  if (parts.empty()) return usage("There is no body to mesh.", "Open a STEP or STL file.");
+  if (parts.empty() && study.zones.empty())
+    return usage("There is no body to mesh.", "Open a STEP or STL file.");
   if (study.options.iterations < 1)
     return usage("At least one iteration is needed.", "Ask for 1 or more; 6 is the default.");
   if (study.options.chord_tolerance && !(*study.options.chord_tolerance > 0))
     return usage("The chord tolerance must be positive.", "Leave it out for the default.");
-  for (const Part& part : parts) {
-    const BodySettings body = settings_of(study, part.name);
-    const std::string who = "Body \"" + part.name + "\": ";
+  std::vector<std::string> names;
+  for (const Part& part : parts) names.push_back(part.name);
+  for (const StudyZone& zone : study.zones) names.push_back(zone.name);
+  if (study.domain) names.emplace_back(kBackground);
+  for (const std::string& name : names) {
+    const BodySettings body = settings_of(study, name);
+    const std::string who = "Body \"" + name + "\": ";
+    if (body.interface_size && !(*body.interface_size > 0))
+      return usage(who + "the interface size must be positive.", "Leave it out for the default.");
     if (body.layers < 1) return usage(who + "at least one layer is needed.", "Ask for n >= 1.");
     if (body.layers2.value_or(1) < 1 || body.layers3.value_or(1) < 1)
       return usage(who + "n2 and n3 must be at least 1.", "Leave them out for long directions.");
@@ -33,12 +40,11 @@ Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
       return usage(who + "h_max must be positive and not below h_min.", "Leave it out for none.");
   }
   const auto known_body = [&](const std::string& name) {
-    return std::any_of(parts.begin(), parts.end(),
-                       [&](const Part& part) { return part.name == name; });
+    return std::count(names.begin(), names.end(), name) > 0;
   };
   const auto body_list = [&] {
     std::string known;
-    for (const Part& part : parts) known += (known.empty() ? "\"" : ", \"") + part.name + "\"";
+    for (const std::string& name : names) known += (known.empty() ? "\"" : ", \"") + name + "\"";
     return "The bodies are " + known + ".";
   };
   for (const SizingObject& object : study.sizing) {

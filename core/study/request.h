@@ -14,6 +14,9 @@ inline constexpr double kAskedFiner = 1.02;
 /// Layers that the average place is to have, of n, so that the poor ones have n too.
 inline constexpr double kWantedLayers = 1.1;
 
+/// What is around the bodies in one mesh of all, where the domain is no body itself.
+inline constexpr const char* kBackground = "background";
+
 /// Whether the study makes sense for these parts. Errors: usage.
 Result<void> check_request(const Study& study, const std::vector<Part>& parts);
 

@@ -16,6 +16,7 @@
 #include "core/natural/thickness_detector.h"
 #include "core/optimize/adapt.h"
 #include "core/sizing/sizing_field.h"
+#include "core/study/assembly.h"
 #include "core/study/first_mesh.h"
 #include "core/study/forecast.h"
 #include "core/study/join.h"
@@ -300,6 +301,7 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
                     Progress progress, IterationSink on_iteration) {
   const auto start = Clock::now();
   if (Result<void> good = check_request(study, parts); !good) return good.error();
+  if (study.domain) return run_assembly(study, parts, meshers, progress, on_iteration);
 
   Outcome outcome;
   std::vector<BodyLoop> bodies;

@@ -8,6 +8,7 @@
 #include "core/geometry/surface.h"
 #include "core/mesh/simplex_mesh.h"
 #include "core/metric/metric.h"
+#include "core/multidomain/filling.h"
 #include "core/natural/boundary_distance.h"
 #include "core/natural/layers.h"
 #include "core/optimize/generate.h"
@@ -24,6 +25,8 @@ struct MeshState {
   std::vector<double> layers;     ///< [node] layers measured back; NaN where not measured
   std::vector<double> quality;    ///< [element] c(T), eq. (3.7), in `metric`
   std::vector<PlaceBelow> below;  ///< places with fewer layers than asked, body by body
+  /// Of fuzzy interfaces, regions as the bodies of the mesh; else null.
+  std::shared_ptr<const Filling> filling;
 };
 
 /// What became of one body.
@@ -36,6 +39,8 @@ struct BodyOutcome {
   BoundaryDistance boundary_distance;  ///< between the mesh and the tessellated part
   double chord_tolerance = 0;          ///< mm, the one that was used
   double h_min = 0;                    ///< mm, the one that was used
+  double interface_size = 0;           ///< mm, the one that was used at fuzzy interfaces
+  double interface_error = 0;          ///< relative L2 error (6.12) of its filling ratio
   LayerStats layers;
   std::vector<PlaceBelow> below;  ///< places with fewer layers than asked, the largest first
   std::vector<IterationRecord> records;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/natural/detector.h"
@@ -26,9 +27,32 @@ struct BodySettings {
   double alpha2 = 0;             ///< see n2: both or none
   std::optional<int> layers3{};  ///< n3 of all sizes beyond; unset: not divided
   std::optional<std::array<double, 3>> color{};  ///< RGB in [0, 1]; unset: the file's or our own
+  /// Size across the body's borders in one mesh of all bodies, of two bodies the smaller counts;
+  /// unset: a quarter of its thinnest layer.
+  std::optional<double> interface_size{};
 
   bool operator==(const BodySettings&) const = default;
 };
+
+/// How the borders between bodies lie in one mesh of all bodies.
+enum class Interfaces {
+  fuzzy,  ///< within thin elements that are filled in part (6.1.2)
+  exact   ///< on faces of the mesh: each element belongs to one body (6.1.1)
+};
+/// "fuzzy", "exact".
+constexpr std::string_view interfaces_name(Interfaces i) {
+  return i == Interfaces::fuzzy ? "fuzzy" : "exact";
+}
+
+/// What draws the mesh together at fuzzy interfaces.
+enum class Capture {
+  distance,  ///< the distance to the border, with its curvature
+  gradient   ///< the gradient of the filling ratio (6.22)
+};
+/// "distance", "gradient".
+constexpr std::string_view capture_name(Capture c) {
+  return c == Capture::distance ? "distance" : "gradient";
+}
 
 /// How the mesh is made. Lengths in mm.
 struct StudyOptions {
@@ -40,7 +64,9 @@ struct StudyOptions {
   Detector detector = Detector::geometric;  ///< who finds the wall thickness
   bool progressive = false;   ///< asks 2, 3, .. n layers (4.4.2): less memory at the first peak
   bool until_settled = true;  ///< end when nodes and layers settle; false: all iterations
-  std::optional<double> memory{};  ///< MB an adaption may take; unset: no limit
+  std::optional<double> memory{};             ///< MB an adaption may take; unset: no limit
+  Interfaces interfaces = Interfaces::exact;  ///< where the study has a domain
+  Capture capture = Capture::distance;        ///< of fuzzy interfaces
 };
 
 /// A STEP or STL file.

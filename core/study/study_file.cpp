@@ -32,6 +32,7 @@ BodySettings read_body(const Json& json, std::size_t index, std::string& complai
   m.integer("layers3", body.layers3, 1);
   m.number("h_min", body.h_min);
   m.number("h_max", body.h_max);
+  m.number("interface_size", body.interface_size);
   m.flag("visible", body.visible);
   if (m.has("color")) {
     Vec<3> color = Vec<3>::Zero();
@@ -42,6 +43,16 @@ BodySettings read_body(const Json& json, std::size_t index, std::string& complai
   }
   m.finish();
   return body;
+}
+
+/// The value of the member by its name, `unset` where there is none.
+template <class Value>
+Value one_of(Members& m, const std::string& member, std::initializer_list<Value> values,
+             Value unset, std::string_view (*name)(Value)) {
+  if (!m.has(member)) return unset;
+  std::vector<std::string> names;
+  for (const Value v : values) names.emplace_back(name(v));
+  return *(values.begin() + m.choice(member, names));
 }
 
 StudyOptions read_options(const Json& json, std::string& complaint) {
@@ -61,6 +72,10 @@ StudyOptions read_options(const Json& json, std::string& complaint) {
   m.flag("progressive", options.progressive);
   m.number("memory", options.memory);
   m.flag("until_settled", options.until_settled);
+  options.interfaces = one_of(m, "interfaces", {Interfaces::fuzzy, Interfaces::exact},
+                              options.interfaces, interfaces_name);
+  options.capture =
+      one_of(m, "capture", {Capture::distance, Capture::gradient}, options.capture, capture_name);
   m.finish();
   return options;
 }
@@ -335,6 +350,7 @@ std::string study_to_json(const Study& study) {
     if (body.layers3) b["layers3"] = *body.layers3;
     if (body.h_min) b["h_min"] = *body.h_min;
     if (body.h_max) b["h_max"] = *body.h_max;
+    if (body.interface_size) b["interface_size"] = *body.interface_size;
     b["visible"] = body.visible;
     if (body.color) b["color"] = *body.color;
     json["bodies"].push_back(std::move(b));
@@ -352,6 +368,10 @@ std::string study_to_json(const Study& study) {
   options["progressive"] = o.progressive;
   if (o.memory) options["memory"] = *o.memory;
   options["until_settled"] = o.until_settled;
+  if (study.domain) {
+    options["interfaces"] = interfaces_name(o.interfaces);
+    options["capture"] = capture_name(o.capture);
+  }
   for (const SizingObject& object : study.sizing) json["sizing"].push_back(json_of(object));
   for (const BoundaryGroup& group : study.groups) json["groups"].push_back(json_of(group));
   for (const CutPlane& cut : study.cuts)

@@ -1,0 +1,475 @@
+#include "core/study/assembly.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/geometry/soup.h"
+#include "core/geometry/triangles.h"
+#include "core/mesh/sample_meshes.h"
+#include "core/mesh/validate.h"
+#include "core/multidomain/interface_metric.h"
+#include "core/natural/medial_ball.h"
+#include "core/natural/natural_metric.h"
+#include "core/optimize/adapt.h"
+#include "core/sizing/sizing_field.h"
+#include "core/study/first_mesh.h"
+#include "core/study/measure.h"
+#include "core/study/request.h"
+#include "core/study/zone_surface.h"
+
+namespace lamella {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr double kFirstMeshShare = 0.1;  // of the progress
+constexpr double kAskedScale = kAskedFiner * kAskedFiner;
+constexpr double kSettledNodes = 0.03, kSettledError = 0.03;  // relative changes
+constexpr int kReportDepth = 6;       // bisections for the figures that are reported
+constexpr int kCells = 6;             // of the first mesh of a box, along its longest side
+constexpr double kOfLayer = 0.25;     // size across a border, of the thinnest layer
+constexpr double kSlope = 1;          // growth of that size with the distance
+constexpr int kBackgroundLayers = 2;  // unless the study says more
+
+/// A body or what is around all of them: a region of the partition.
+struct Member {
+  Part part;  ///< its surface, the whole of it whatever lies over it
+  NaturalParams natural;
+  std::unique_ptr<const NaturalDetector> detector;
+  SizingField sizing;
+  double interface_size = 0;
+};
+
+/// The same surface seen from its other side, behind those already in `all`.
+void append_reversed(const ReferenceSurface<3>& surface, ReferenceSurface<3>& all) {
+  const auto shift = static_cast<std::int32_t>(all.points.size());
+  const auto faces = static_cast<std::int32_t>(all.faces.size());
+  all.points.insert(all.points.end(), surface.points.begin(), surface.points.end());
+  for (const auto& f : surface.facets)
+    all.facets.push_back({f[0] + shift, f[2] + shift, f[1] + shift});
+  for (const std::int32_t face : surface.facet_face) all.facet_face.push_back(face + faces);
+  all.faces.insert(all.faces.end(), surface.faces.begin(), surface.faces.end());
+}
+
+Box<3> box_of(const std::vector<Member>& members) {
+  Box<3> box;
+  for (const Member& member : members)
+    for (const Vec<3>& p : member.part.surface.points) box.add(p);
+  return box;
+}
+
+class AssemblyLoop {
+ public:
+  explicit AssemblyLoop(const Study& study) : study_(study), options_(study.options) {}
+
+  Result<void> begin(const std::vector<Part>& parts,
+                     const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+                     const Progress& progress) {
+    const auto start = Clock::now();
+    if (options_.detector != Detector::geometric)
+      return Error{Code::usage, "One mesh of several bodies needs the geometric detector.",
+                   "Leave the detector out."};
+    Result<SimplexMesh<3>> first = lay_out(parts, meshers, progress.portion(0, 0.5, "first mesh"));
+    if (!first) return first.error();
+    return accept(std::move(*first), start, progress.portion(0.5, 1));
+  }
+
+  Result<void> step(const Progress& progress) {
+    const auto start = Clock::now();
+    AdaptParams params;
+    params.chord_tolerance = chord_tolerance_;
+    params.seed = options_.seed;
+    params.threads = options_.threads;
+    params.memory_limit = options_.memory;
+    MetricFunction<3> asked_at;
+    if (options_.capture == Capture::distance)
+      asked_at = [captured = captured_at()](const Vec<3>& x) -> Metric<3> {
+        return captured(x) * kAskedScale;
+      };
+    MetricField<3> asked = current_.metric;
+    for (std::size_t i = 1; i < asked.size(); ++i) asked[i] *= kAskedScale;
+    Result<Adapted<3>> adapted =
+        adapt<3>(current_.mesh, asked, domain_surface_ ? &*domain_surface_ : nullptr, params,
+                 progress.portion(0, 0.7), asked_at);
+    if (!adapted) return adapted.error();
+    if (adapted->report.cancelled) return cancelled_error();
+    if (Result<void> valid = validate<3>(adapted->mesh); !valid) return valid.error();
+    return accept(std::move(adapted->mesh), start, progress.portion(0.7, 1));
+  }
+
+  const MeshState& current() const { return current_; }
+  const IterationRecord& last_record() const { return records_.back(); }
+  bool settled() const { return settled_; }
+  bool converged() const {
+    return settled_ &&
+           std::all_of(outcomes_.begin(), outcomes_.end() - 1, [](const BodyOutcome& b) {
+             return b.layers.places == 0 || b.layers.mean >= b.layers_asked;
+           });
+  }
+
+  /// Closes the books, the figures with a finer division at the borders than in the loop.
+  std::vector<BodyOutcome> finish(const Progress& progress) {
+    FillingParams params;
+    params.depth = kReportDepth;
+    params.threads = options_.threads;
+    Result<Filling> filling = filling_ratios<3>(current_.mesh, *partition_, params, progress);
+    if (filling) count(filling_errors<3>(current_.mesh, *filling));
+    return outcomes_;
+  }
+
+ private:
+  /// Regions and the first mesh of the domain.
+  Result<SimplexMesh<3>> lay_out(const std::vector<Part>& parts,
+                                 const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+                                 const Progress& progress) {
+    const auto& domain = study_.domain->shape;
+    const auto* body = std::get_if<DomainBody>(&domain);
+    std::string background = body ? body->name : kBackground;
+    std::vector<Region<3>> regions;
+    std::optional<Part> outside;  // the domain, where it is a body
+    for (const Part& part : parts) {
+      if (body && part.name == body->name) {
+        outside = part;
+        continue;
+      }
+      Member member;
+      member.part = part;
+      members_.push_back(std::move(member));
+      regions.push_back({part.name, surface_zone<3>(part.surface)});
+    }
+    for (const StudyZone& zone : study_.zones) {
+      if (zone.name == background) continue;
+      regions.push_back({zone.name, make_zone(zone, study_.zones)});
+    }
+    Result<StudyZone> hull = domain_zone(background);
+    if (!hull) return hull.error();
+    const double diagonal = domain_diagonal(*hull, outside);
+    chord_tolerance_ = options_.chord_tolerance.value_or(1e-3 * diagonal);
+    for (const StudyZone& zone : study_.zones) {
+      if (zone.name == background) continue;
+      Result<ReferenceSurface<3>> surface =
+          zone_surface(zone, study_.zones, *hull, chord_tolerance_);
+      if (!surface) return surface.error();
+      Member member;
+      member.part.name = zone.name;
+      member.part.surface = std::move(*surface);
+      member.part.cad_volume = enclosed_measure(member.part.surface);
+      members_.push_back(std::move(member));
+    }
+    if (members_.empty())
+      return Error{Code::usage, "The domain holds no body.", "Add a part or a zone to the study."};
+
+    Result<SimplexMesh<3>> first = domain_mesh(*hull, outside, meshers, progress);
+    if (!first) return first.error();
+    // What is around the bodies has the domain's wall, and theirs from the other side.
+    Member around;
+    around.part.name = background;
+    around.part.surface = boundary_surface(*first, 0);
+    double volume = enclosed_measure(around.part.surface);
+    if (outside) volume = outside->cad_volume;
+    for (const Member& member : members_) {
+      append_reversed(member.part.surface, around.part.surface);
+      volume -= member.part.cad_volume;
+    }
+    around.part.cad_volume = volume;
+    members_.push_back(std::move(around));
+    partition_ = std::make_unique<Partition<3>>(std::move(regions), background);
+    for (Member& member : members_)
+      if (Result<void> ready = prepare(member); !ready) return ready.error();
+    return first;
+  }
+
+  /// Detector, sizes by hand and size across borders of a member, and its entry in the books.
+  Result<void> prepare(Member& member) {
+    const ReferenceSurface<3>& surface = member.part.surface;
+    const BodySettings settings = settings_of(study_, member.part.name);
+    member.natural = natural_params(study_, member.part);
+    if (member.part.name == kBackground && settings == settings_of(Study{}, kBackground))
+      member.natural.layers = kBackgroundLayers;
+    member.detector = std::make_unique<NaturalDetector>(surface);
+    Result<SizingField> sizing = SizingField::make(sizing_of(study_, member.part.name), surface);
+    if (!sizing) return sizing.error();
+    member.sizing = std::move(*sizing);
+    member.interface_size = settings.interface_size.value_or(kOfLayer * thinnest_layer(member));
+    BodyOutcome outcome;
+    outcome.name = member.part.name;
+    outcome.layers_asked = member.natural.layers;
+    outcome.cad_volume = member.part.cad_volume;
+    outcome.chord_tolerance = chord_tolerance_;
+    outcome.h_min = member.natural.h_min;
+    outcome.interface_size = member.interface_size;
+    outcome.first_mesh_by = first_mesh_by_;
+    outcome.notes = member.part.notes;
+    outcomes_.push_back(std::move(outcome));
+    return {};
+  }
+
+  /// The 5 % quantile of the smallest natural size on the surface, mm.
+  double thinnest_layer(const Member& member) const {
+    constexpr std::size_t kSamples = 2000;
+    const ReferenceSurface<3>& s = member.part.surface;
+    const std::size_t stride = s.facets.size() / kSamples + 1;
+    std::vector<double> found((s.facets.size() + stride - 1) / stride);
+    parallel_each(found.size(), options_.threads, {}, [&](std::size_t i) {
+      const auto& f = s.facets[i * stride];
+      const Vec<3> middle = (s.points[f[0]] + s.points[f[1]] + s.points[f[2]]) / 3;
+      found[i] = sizes<3>(member.detector->at(middle, member.natural).metric)[0];
+    });
+    std::sort(found.begin(), found.end());
+    return found.empty() ? diagonal_of(s.points) : found[found.size() / 20];
+  }
+
+  /// The domain as a box or a cylinder; a domain that is a part is the box around it.
+  Result<StudyZone> domain_zone(const std::string& background) const {
+    StudyZone zone;
+    zone.name = background;
+    const auto& domain = study_.domain->shape;
+    if (const auto* box = std::get_if<ZoneBox>(&domain)) {
+      zone.shape = *box;
+    } else if (const auto* cylinder = std::get_if<ZoneCylinder>(&domain)) {
+      zone.shape = *cylinder;
+    } else if (const auto* body = std::get_if<DomainBody>(&domain)) {
+      for (const StudyZone& candidate : study_.zones)
+        if (candidate.name == body->name) return candidate;
+      zone.shape = ZoneBox{};
+    } else {
+      const auto* margin = std::get_if<DomainMargin>(&domain);
+      Box<3> around = box_of(members_);
+      for (const StudyZone& other : study_.zones) {
+        const Box<3> b = make_zone(other, study_.zones)->box();
+        if ((b.hi - b.lo).allFinite()) around.add(b);
+      }
+      if (!((around.hi - around.lo).minCoeff() > 0))
+        return Error{Code::usage, "The bodies have no box that a margin could be put around.",
+                     "Give the domain as a box or a cylinder."};
+      const Vec<3> grow = Vec<3>::Constant((margin ? margin->share : DomainMargin{}.share) *
+                                           (around.hi - around.lo).norm());
+      zone.shape = ZoneBox{around.lo - grow, around.hi + grow};
+    }
+    return zone;
+  }
+
+  double domain_diagonal(const StudyZone& hull, const std::optional<Part>& outside) const {
+    if (outside) return diagonal_of(outside->surface.points);
+    const Box<3> box = make_zone(hull, {hull})->box();
+    return (box.hi - box.lo).norm();
+  }
+
+  /// A box is meshed right away, anything else from its surface.
+  Result<SimplexMesh<3>> domain_mesh(
+      const StudyZone& hull, const std::optional<Part>& outside,
+      const std::vector<std::shared_ptr<const VolumeMesher>>& meshers, const Progress& progress) {
+    if (const auto* box = std::get_if<ZoneBox>(&hull.shape); box && !outside) {
+      const Vec<3> side = box->high - box->low;
+      std::array<int, 3> cells{};
+      for (int k = 0; k < 3; ++k)
+        cells[k] = std::max(2, static_cast<int>(std::lround(kCells * side[k] / side.maxCoeff())));
+      first_mesh_by_ = "box";
+      return box_mesh<3>(cells, box->low, box->high);
+    }
+    Part part;
+    if (outside) {
+      part = *outside;
+    } else {
+      part.name = hull.name;
+      Result<ReferenceSurface<3>> surface = zone_surface(hull, {hull}, hull, chord_tolerance_);
+      if (!surface) return surface.error();
+      part.surface = std::move(*surface);
+    }
+    Result<FirstMesh> first = first_mesh(part, meshers, progress);
+    if (!first) return first.error();
+    first_mesh_by_ = first->made_by;
+    domain_surface_ = std::move(part.surface);
+    return std::move(first->mesh);
+  }
+
+  Metric<3> natural_at(const Vec<3>& x) const {
+    const Member& member = members_[partition_->region_of(x)];
+    return member.sizing.apply(x, member.detector->at(x, member.natural).metric);
+  }
+
+  std::vector<double> interface_sizes() const {
+    std::vector<double> sizes;
+    for (const Member& member : members_) sizes.push_back(member.interface_size);
+    return sizes;
+  }
+
+  MetricFunction<3> captured_at() const {
+    return interface_metric_at<3>(
+        *partition_, [this](const Vec<3>& x) { return natural_at(x); }, interface_sizes(), kSlope);
+  }
+
+  /// Takes the mesh as the next state, with filling, metric, layers and record.
+  Result<void> accept(SimplexMesh<3> mesh, Clock::time_point start, const Progress& progress) {
+    MeshState next;
+    next.mesh = std::move(mesh);
+    FillingParams filling_params;
+    filling_params.threads = options_.threads;
+    Result<Filling> filling =
+        filling_ratios<3>(next.mesh, *partition_, filling_params, progress.portion(0, 0.1));
+    if (!filling) return filling.error();
+    next.mesh.bodies = partition_->names();
+    for (std::size_t e = 0; e < next.mesh.elements.size(); ++e)
+      next.mesh.element_body[e] = filling->main_region(e);
+    if (Result<void> asked = ask(next, *filling, progress.portion(0.1, 0.4)); !asked) return asked;
+    Result<IterationRecord> record = measure(next, progress.portion(0.4, 0.5));
+    if (!record) return record.error();
+    count(filling_errors<3>(next.mesh, *filling));
+    if (Result<void> measured = measure_bodies(next, progress.portion(0.5, 1)); !measured)
+      return measured;
+    record->mixed = filling->mixed_count();
+    for (const BodyOutcome& body : outcomes_)
+      record->interface_error = std::max(record->interface_error, body.interface_error);
+    record->iteration = static_cast<int>(records_.size());
+    sum_layers(*record);
+    record->seconds = seconds_since(start);
+    if (record->iteration > 1) {
+      const IterationRecord& before = records_.back();
+      const auto change = [](double a, double b) { return std::abs(a - b) / std::max(b, 1e-300); };
+      settled_ = change(static_cast<double>(record->nodes), static_cast<double>(before.nodes)) <
+                     kSettledNodes &&
+                 change(record->interface_error, before.interface_error) < kSettledError;
+    }
+    next.filling = std::make_shared<const Filling>(std::move(*filling));
+    current_ = std::move(next);
+    records_.push_back(*record);
+    for (BodyOutcome& body : outcomes_) body.records.push_back(*record);
+    return {};
+  }
+
+  /// The metric asked and the wall thickness at the nodes.
+  Result<void> ask(MeshState& state, const Filling& filling, const Progress& progress) const {
+    const std::size_t count = state.mesh.points.size();
+    state.metric.assign(count, Metric<3>::Identity());
+    state.thickness.assign(count, 0);
+    const bool by_distance = options_.capture == Capture::distance;
+    const MetricFunction<3> captured = captured_at();
+    const auto at_node = [&](std::size_t i) {
+      const Vec<3>& x = state.mesh.points[i + 1];
+      const Member& member = members_[partition_->region_of(x)];
+      const Natural natural = member.detector->at(x, member.natural);
+      state.thickness[i + 1] = natural.thickness;
+      state.metric[i + 1] = by_distance ? captured(x) : member.sizing.apply(x, natural.metric);
+    };
+    if (!parallel_each(count - 1, options_.threads, progress, at_node)) return cancelled_error();
+    if (by_distance) return {};
+    InterfaceParams params;
+    params.h_min = interface_sizes();
+    params.round = static_cast<int>(records_.size());
+    params.threads = options_.threads;
+    Result<MetricField<3>> metric =
+        interface_metric<3>(state.mesh, filling, state.metric, params, progress);
+    if (!metric) return metric.error();
+    state.metric = std::move(*metric);
+    return {};
+  }
+
+  Result<void> measure_bodies(MeshState& state, const Progress& progress) {
+    const auto count = static_cast<double>(members_.size());
+    state.layers.assign(state.mesh.points.size(), std::numeric_limits<double>::quiet_NaN());
+    state.below.clear();
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+      const auto at = static_cast<double>(m);
+      Result<Layers> layers =
+          measure_layers_within(state.mesh, members_[m].part.surface, outcomes_[m].layers_asked,
+                                options_.threads, progress.portion(at / count, (at + 1) / count));
+      if (!layers) return layers.error();
+      outcomes_[m].layers = layers->stats;
+      outcomes_[m].below = layers->below;
+      state.below.insert(state.below.end(), layers->below.begin(), layers->below.end());
+      for (std::size_t i = 1; i < state.layers.size(); ++i)
+        if (partition_->region_of(state.mesh.points[i]) == static_cast<int>(m))
+          state.layers[i] = layers->at_node[i];
+    }
+    return {};
+  }
+
+  void count(const std::vector<FillingError>& errors) {
+    for (std::size_t m = 0; m < errors.size(); ++m) {
+      outcomes_[m].mesh_volume = errors[m].volume;
+      outcomes_[m].interface_error = errors[m].relative_l2;
+    }
+  }
+
+  /// Of the bodies, not of what is around them.
+  void sum_layers(IterationRecord& record) const {
+    double places = 0;
+    bool first = true;
+    LayerStats& all = record.layers;
+    for (std::size_t m = 0; m + 1 < outcomes_.size(); ++m) {
+      const LayerStats& of = outcomes_[m].layers;
+      if (of.places == 0) continue;
+      const auto p = static_cast<double>(of.places);
+      all.mean += p * of.mean;
+      all.share_reached += p * of.share_reached;
+      all.p5 = first ? of.p5 : std::min(all.p5, of.p5);
+      all.p50 = first ? of.p50 : std::min(all.p50, of.p50);
+      all.p95 = std::max(all.p95, of.p95);
+      all.places += of.places;
+      places += p;
+      first = false;
+    }
+    if (places > 0) {
+      all.mean /= places;
+      all.share_reached /= places;
+    }
+  }
+
+  const Study& study_;
+  const StudyOptions& options_;
+  std::vector<Member> members_;  // [region], what is around the bodies last
+  std::unique_ptr<const Partition<3>> partition_;
+  std::optional<ReferenceSurface<3>> domain_surface_;
+  double chord_tolerance_ = 0;
+  std::string first_mesh_by_;
+  MeshState current_;
+  std::vector<BodyOutcome> outcomes_;  // [region]
+  std::vector<IterationRecord> records_;
+  bool settled_ = false;
+};
+
+}  // namespace
+
+Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
+                             const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+                             const Progress& progress, const IterationSink& on_iteration) {
+  const auto start = Clock::now();
+  Outcome outcome;
+  AssemblyLoop loop(study);
+  const auto tell = [&] {
+    outcome.records.push_back(loop.last_record());
+    outcome.state = std::make_shared<const MeshState>(loop.current());
+    if (on_iteration) on_iteration(loop.last_record(), outcome.state);
+  };
+  if (Result<void> begun =
+          loop.begin(parts, meshers, progress.portion(0, kFirstMeshShare, "first mesh"));
+      !begun)
+    return begun.error();
+  tell();
+  const int iterations = study.options.iterations;
+  for (int i = 1; i <= iterations && !outcome.cancelled; ++i) {
+    const double width = (0.97 - kFirstMeshShare) / iterations;
+    const Progress round =
+        progress.portion(kFirstMeshShare + width * (i - 1), kFirstMeshShare + width * i,
+                         "iteration " + std::to_string(i));
+    const Result<void> stepped = loop.step(round);
+    if (!stepped && stepped.error().code != Code::cancelled) return stepped.error();
+    outcome.cancelled = !stepped;
+    if (stepped) tell();
+    if (study.options.until_settled && loop.settled()) break;
+  }
+  outcome.bodies = loop.finish(outcome.cancelled ? Progress{} : progress.portion(0.97, 1));
+  outcome.converged = !outcome.cancelled && loop.converged();
+  outcome.seconds = seconds_since(start);
+  progress.report(1);
+  return outcome;
+}
+
+}  // namespace lamella
