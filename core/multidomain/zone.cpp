@@ -1,6 +1,8 @@
 #include "core/multidomain/zone.h"
 
 #include <algorithm>
+#include <map>
+#include <numbers>
 
 #include "core/geometry/locator.h"
 #include "core/geometry/winding.h"
@@ -16,30 +18,88 @@ Box<D> everywhere() {
   return box;
 }
 
+/// Where a surface that should be closed ends: across such a hole its winding number w changes
+/// smoothly, and the border of {w > 1/2} is no part of the surface.
+class Rim {
+ public:
+  explicit Rim(const ReferenceSurface<3>& surface) {
+    // By position, for points may be unwelded.
+    std::map<std::array<double, 3>, std::int32_t> ids;
+    std::vector<std::int32_t> id;
+    for (const Vec<3>& p : surface.points)
+      id.push_back(
+          ids.try_emplace({p[0], p[1], p[2]}, static_cast<std::int32_t>(id.size())).first->second);
+    std::map<std::array<std::int32_t, 2>, int> ends;
+    for (const auto& f : surface.facets)
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t from = id[f[k]], to = id[f[(k + 1) % 3]];
+        if (from != to) ends[{std::min(from, to), std::max(from, to)}] += from < to ? 1 : -1;
+      }
+    for (const auto& [edge, times] : ends) {
+      if (times == 0) continue;
+      const Vec<3>&p = surface.points[edge[0]], &q = surface.points[edge[1]];
+      pieces_.push_back({(p + q) / 2, (q - p).norm() / 2, std::abs(times)});
+    }
+  }
+  bool empty() const { return pieces_.empty(); }
+  /// A lower bound of the distance to where w = 1/2, at most that to the surface, `near`. The
+  /// gradient of w is that of the rim's solid angle, |grad w| <= sum of length / (4 pi d^2) (law of
+  /// Biot and Savart).
+  double level_distance(const Vec<3>& x, double w, double near) const {
+    double steepness = 0, nearest = std::numeric_limits<double>::infinity();
+    for (const Piece& piece : pieces_) {
+      const double d = std::max((x - piece.middle).norm() - piece.half, near);
+      nearest = std::min(nearest, d);
+      steepness += piece.times * piece.half / (2 * std::numbers::pi * d * d);
+    }
+    // The largest s with s * steepness / (1 - s / nearest)^2 <= |w - 1/2|, and s <= near.
+    const double reach = std::abs(w - 0.5) / steepness;
+    const double b = 1 + nearest / (2 * reach);
+    return std::min(near, nearest / (b + std::sqrt(b * b - 1)));
+  }
+
+ private:
+  struct Piece {
+    Vec<3> middle;
+    double half;
+    int times;
+  };
+  std::vector<Piece> pieces_;
+};
+
 template <int D>
 class SurfaceZone : public Zone<D> {
  public:
   SurfaceZone(const ReferenceSurface<D>& surface, Inside inside) : locator_(surface) {
     for (const Vec<D>& p : surface.points) box_.add(p);
     if constexpr (D == 3)
-      if (inside == Inside::winding)
+      if (inside == Inside::winding && !locator_.empty()) {
         winding_ = std::make_unique<WindingNumber>(surface.points, surface.facets);
+        rim_ = std::make_unique<Rim>(surface);
+      }
   }
   ZoneDistance<D> at(const Vec<D>& x) const override {
     if (locator_.empty()) return {};
-    if (!winding_) {
-      const SignedNearest<D> near = locator_.signed_nearest(x);
-      return {near.distance, away(x, near.foot.point, near.distance, near.pseudo_normal)};
-    }
-    const Nearest<D> near = *locator_.nearest(x);
-    double d = std::sqrt(near.distance2);
     if constexpr (D == 3)
-      if ((*winding_)(x) > 0.5) d = -d;
-    return {d, away(x, near.point, d, locator_.normal(near.facet))};
+      if (winding_) return at_by_winding(x);
+    const SignedNearest<D> near = locator_.signed_nearest(x);
+    return {near.distance, away(x, near.foot.point, near.distance, near.pseudo_normal)};
   }
   Box<D> box() const override { return box_; }
 
  private:
+  ZoneDistance<3> at_by_winding(const Vec<3>& x) const {
+    const Nearest<3> near = *locator_.nearest(x);
+    const double w = (*winding_)(x), d = std::sqrt(near.distance2), sign = w > 0.5 ? -1 : 1;
+    const double level = rim_->empty() || d == 0 ? d : rim_->level_distance(x, w, d);
+    if (level == d) return {sign * d, away(x, near.point, sign * d, locator_.normal(near.facet))};
+    Vec<3> falls;
+    for (int k = 0; k < 3; ++k) {
+      const Vec<3> step = 1e-2 * d * Vec<3>::Unit(k);
+      falls[k] = (*winding_)(x - step) - (*winding_)(x + step);
+    }
+    return {sign * level, falls.normalized()};
+  }
   static Vec<D> away(const Vec<D>& x, const Vec<D>& foot, double d, const Vec<D>& on_surface) {
     const Vec<D> to = x - foot;
     const double length = to.norm();
@@ -48,6 +108,7 @@ class SurfaceZone : public Zone<D> {
   }
   Locator<D> locator_;
   std::unique_ptr<WindingNumber> winding_;
+  std::unique_ptr<Rim> rim_;
   Box<D> box_;
 };
 
@@ -151,23 +212,33 @@ class VoronoiZone : public Zone<D> {
  public:
   VoronoiZone(const std::vector<Vec<D>>& seeds, std::size_t cell) : seed_(seeds[cell]) {
     for (std::size_t s = 0; s < seeds.size(); ++s)
-      if (s != cell) others_.push_back(seeds[s]);
+      if (s != cell) {
+        const double gap = (seeds[s] - seed_).norm();
+        planes_.push_back({(seeds[s] - seed_) / gap, gap / 2});
+      }
+    std::stable_sort(planes_.begin(), planes_.end(),
+                     [](const Plane& a, const Plane& b) { return a.offset < b.offset; });
   }
   ZoneDistance<D> at(const Vec<D>& x) const override {
     ZoneDistance<D> best{-std::numeric_limits<double>::infinity()};
-    const double own = (x - seed_).squaredNorm();
-    for (const Vec<D>& other : others_) {
-      const Vec<D> between = other - seed_;
-      const double d = (own - (x - other).squaredNorm()) / (2 * between.norm());
-      if (d > best.distance) best = {d, between.normalized()};
+    const Vec<D> from_seed = x - seed_;
+    const double far = from_seed.norm();
+    for (const Plane& plane : planes_) {
+      if (far - plane.offset <= best.distance) break;  // neither this nor any other beyond it
+      const double d = plane.normal.dot(from_seed) - plane.offset;
+      if (d > best.distance) best = {d, plane.normal};
     }
     return best;
   }
   Box<D> box() const override { return everywhere<D>(); }
 
  private:
+  struct Plane {
+    Vec<D> normal;
+    double offset;  // from the seed
+  };
   Vec<D> seed_;
-  std::vector<Vec<D>> others_;
+  std::vector<Plane> planes_;
 };
 
 /// The zone of which the distance, times `sign`, is the largest.
