@@ -18,26 +18,40 @@ Box<D> everywhere() {
   return box;
 }
 
+using Facets = std::vector<std::array<std::int32_t, 3>>;
+
+/// The facets by the first vertex at each position, for points may be unwelded, and each once.
+Facets welded(const ReferenceSurface<3>& surface) {
+  std::map<std::array<double, 3>, std::int32_t> first;
+  std::vector<std::int32_t> id;
+  for (const Vec<3>& p : surface.points)
+    id.push_back(
+        first.try_emplace({p[0], p[1], p[2]}, static_cast<std::int32_t>(id.size())).first->second);
+  Facets facets;
+  for (auto f : surface.facets) {
+    for (std::int32_t& v : f) v = id[v];
+    std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+    facets.push_back(f);
+  }
+  std::sort(facets.begin(), facets.end());
+  facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+  return facets;
+}
+
 /// Where a surface that should be closed ends: across such a hole its winding number w changes
 /// smoothly, and the border of {w > 1/2} is no part of the surface.
 class Rim {
  public:
-  explicit Rim(const ReferenceSurface<3>& surface) {
-    // By position, for points may be unwelded.
-    std::map<std::array<double, 3>, std::int32_t> ids;
-    std::vector<std::int32_t> id;
-    for (const Vec<3>& p : surface.points)
-      id.push_back(
-          ids.try_emplace({p[0], p[1], p[2]}, static_cast<std::int32_t>(id.size())).first->second);
+  Rim(const std::vector<Vec<3>>& points, const Facets& facets) {
     std::map<std::array<std::int32_t, 2>, int> ends;
-    for (const auto& f : surface.facets)
+    for (const auto& f : facets)
       for (int k = 0; k < 3; ++k) {
-        const std::int32_t from = id[f[k]], to = id[f[(k + 1) % 3]];
+        const std::int32_t from = f[k], to = f[(k + 1) % 3];
         if (from != to) ends[{std::min(from, to), std::max(from, to)}] += from < to ? 1 : -1;
       }
     for (const auto& [edge, times] : ends) {
       if (times == 0) continue;
-      const Vec<3>&p = surface.points[edge[0]], &q = surface.points[edge[1]];
+      const Vec<3>&p = points[edge[0]], &q = points[edge[1]];
       pieces_.push_back({(p + q) / 2, (q - p).norm() / 2, std::abs(times)});
     }
   }
@@ -74,8 +88,9 @@ class SurfaceZone : public Zone<D> {
     for (const Vec<D>& p : surface.points) box_.add(p);
     if constexpr (D == 3)
       if (inside == Inside::winding && !locator_.empty()) {
-        winding_ = std::make_unique<WindingNumber>(surface.points, surface.facets);
-        rim_ = std::make_unique<Rim>(surface);
+        const Facets facets = welded(surface);
+        winding_ = std::make_unique<WindingNumber>(surface.points, facets);
+        rim_ = std::make_unique<Rim>(surface.points, facets);
       }
   }
   ZoneDistance<D> at(const Vec<D>& x) const override {
@@ -90,8 +105,13 @@ class SurfaceZone : public Zone<D> {
  private:
   ZoneDistance<3> at_by_winding(const Vec<3>& x) const {
     const Nearest<3> near = *locator_.nearest(x);
-    const double w = (*winding_)(x), d = std::sqrt(near.distance2), sign = w > 0.5 ? -1 : 1;
-    const double level = rim_->empty() || d == 0 ? d : rim_->level_distance(x, w, d);
+    const double w = (*winding_)(x), d = std::sqrt(near.distance2);
+    const bool open = !rim_->empty() && d > 0;
+    // What bulges out of holes ends with the surface's box.
+    const double side = open ? std::min((x - box_.lo).minCoeff(), (box_.hi - x).minCoeff()) : d;
+    const double sign = w > 0.5 && side >= 0 ? -1 : 1;
+    double level = open ? rim_->level_distance(x, w, d) : d;
+    if (w > 0.5 && open) level = side >= 0 ? std::min(level, side) : std::min(d, -side);
     if (level == d) return {sign * d, away(x, near.point, sign * d, locator_.normal(near.facet))};
     Vec<3> falls;
     for (int k = 0; k < 3; ++k) {

@@ -251,6 +251,24 @@ TEST(Zone, AcrossAHoleTheDistanceHasNoJump) {
   }
 }
 
+TEST(Zone, ADoubledOpenSurfaceEndsWithItsBox) {
+  ReferenceSurface<3> open = testing::box_surface({2, 2, 2}, {2, 2, 2});
+  std::erase_if(open.facets, [&](const auto& f) {
+    return open.points[f[0]][2] + open.points[f[1]][2] + open.points[f[2]][2] > 5.99;
+  });
+  const auto once = surface_zone<3>(open, Inside::winding);
+  const auto facets = open.facets;
+  for (const auto& f : facets) open.facets.push_back({f[1], f[2], f[0]});
+  open.facet_face.resize(open.facets.size());
+  const auto twice = surface_zone<3>(open, Inside::winding);
+  expect_in_box(*twice);
+  Points points;
+  for (int i = 0; i < 300; ++i) {
+    const Vec<3> x = points.in(-1, 3);
+    EXPECT_EQ(once->distance(x), twice->distance(x));
+  }
+}
+
 TEST(Zone, UnweldedFacetsAreNoHoles) {
   const ReferenceSurface<3> box = testing::box_surface({2, 2, 2});
   ReferenceSurface<3> soup = box;
