@@ -267,7 +267,9 @@ void settle(Job& job, const OverlapOptions& options) {
   }
   job.error = std::abs(job.volume - job.before);
   const bool close = job.error <= options.tolerance * std::max(job.volume, small);
-  job.done = (side <= coarsest && close) || side <= finest;
+  // Planes seen from where three bodies meet seem to overlap: no point of it is ever found.
+  const bool seeming = job.score == -kInfinity && side <= coarsest / 2;
+  job.done = (side <= coarsest && close) || seeming || side <= finest;
 }
 
 /// Measures all jobs at once, level by level. False when cancelled.
@@ -343,12 +345,8 @@ Result<OverlapReport> find_overlaps(const Partition<3>& partition, const Overlap
     if (options.within) near.back() = common(near.back(), *options.within);
   }
   std::vector<Job> jobs;
-  const std::vector<std::array<int, 2>> pairs = meeting(boxes);
-  for (const auto& [a, b] : pairs) {
+  for (const auto& [a, b] : meeting(boxes))
     jobs.push_back({Job::Kind::overlap, a, b, common(boxes[a], boxes[b])});
-    if (holds(boxes[a], boxes[b])) jobs.push_back({Job::Kind::outside, a, b, boxes[b]});
-    if (holds(boxes[b], boxes[a])) jobs.push_back({Job::Kind::outside, b, a, boxes[a]});
-  }
   if (options.gap_width > 0) {
     const std::vector<std::array<int, 2>> close = meeting(near);
     std::vector<std::vector<int>> neighbors(static_cast<std::size_t>(bodies));
@@ -364,9 +362,9 @@ Result<OverlapReport> find_overlaps(const Partition<3>& partition, const Overlap
     }
   }
   const Finder finder(partition, options.gap_width);
-  if (!measure(jobs, finder, options, progress.portion(0, 0.95))) return cancelled_error();
+  if (!measure(jobs, finder, options, progress.portion(0, 0.7))) return cancelled_error();
   if (!parallel_each(
-          jobs.size(), options.threads, progress.portion(0.95, 1),
+          jobs.size(), options.threads, progress.portion(0.7, 0.75),
           [&](std::size_t j) {
             if (jobs[j].score > -kInfinity) finder.climb(jobs[j]);
           },
@@ -374,26 +372,32 @@ Result<OverlapReport> find_overlaps(const Partition<3>& partition, const Overlap
     return cancelled_error();
 
   OverlapReport report;
+  std::vector<Job> rest;
+  std::vector<std::size_t> pair;  // of each of them
   for (const Job& job : jobs) {
     const double size = (job.box.hi - job.box.lo).norm();
-    const bool there = job.score > -kInfinity && job.volume > 0;
+    if (!(job.score > -kInfinity && job.volume > 0)) continue;
     if (job.kind == Job::Kind::gap) {
-      if (there && -job.score > 1e-9 * size)
+      if (-job.score > 1e-9 * size)
         report.gaps.push_back({job.first, job.second, job.volume, job.error, job.width / job.volume,
                                -job.score, job.place});
-    } else if (job.kind == Job::Kind::overlap) {
-      if (there && job.score > std::max(options.contact, 1e-9 * size))
-        report.overlaps.push_back(
-            {job.first, job.second, job.volume, job.error, job.place, job.score, {}});
-    } else if (!report.overlaps.empty()) {
-      // It follows the job of the overlap of its pair.
-      Overlap& last = report.overlaps.back();
-      const bool same = last.first == std::min(job.first, job.second) &&
-                        last.second == std::max(job.first, job.second);
-      if (same && !last.inner &&
-          !(there && job.volume > options.tolerance * last.volume && job.score > options.contact))
-        last.inner = job.second;
+      continue;
     }
+    if (!(job.score > std::max(options.contact, 1e-9 * size))) continue;
+    for (const auto& [outer, inner] : {std::pair(job.first, job.second), {job.second, job.first}})
+      if (holds(boxes[outer], boxes[inner])) {
+        rest.push_back({Job::Kind::outside, outer, inner, boxes[inner]});
+        pair.push_back(report.overlaps.size());
+      }
+    report.overlaps.push_back(
+        {job.first, job.second, job.volume, job.error, job.place, job.score, {}});
+  }
+  if (!measure(rest, finder, options, progress.portion(0.75, 1))) return cancelled_error();
+  for (std::size_t j = 0; j < rest.size(); ++j) {
+    Overlap& overlap = report.overlaps[pair[j]];
+    const bool sticks_out =
+        rest[j].score > options.contact && rest[j].volume > options.tolerance * overlap.volume;
+    if (!sticks_out && !overlap.inner) overlap.inner = rest[j].second;
   }
   return report;
 }
