@@ -13,6 +13,7 @@ namespace lamella {
 namespace {
 
 constexpr int kTries = 20000;  // places tried for one seed or inclusion
+constexpr int kShakes = 50;    // moves of all balls to make room for one
 
 /// Chance that is the same everywhere: what the distributions of <random> make of the generator is
 /// left to each library.
@@ -51,6 +52,10 @@ class Buckets {
   void add(const Vec<3>& x, std::int32_t id) {
     const auto c = cell(x);
     bucket(c[0], c[1], c[2]).push_back(id);
+  }
+  void remove(const Vec<3>& x, std::int32_t id) {
+    const auto c = cell(x);
+    std::erase(bucket(c[0], c[1], c[2]), id);
   }
   /// Calls visit(id) for all points nearer than r and maybe others, until one returns true.
   template <class Visit>
@@ -280,20 +285,36 @@ Result<std::vector<BallInclusion>> pack_balls(const Specimen& specimen,
   const Box<3> box = specimen.zone->box();
   std::vector<BallInclusion> balls;
   Buckets buckets(box, 2 * radii.front() + options.gap);
+  const auto fits = [&](const Vec<3>& x, double r, std::int32_t but) {
+    return specimen.zone->distance(x) <= -r - options.gap &&
+           !buckets.any(x, r + radii.front() + options.gap, [&](std::int32_t b) {
+             return b != but && (balls[b].center - x).norm() < balls[b].radius + r + options.gap;
+           });
+  };
+  const auto shake = [&] {
+    for (std::size_t b = 0; b < balls.size(); ++b) {
+      const auto id = static_cast<std::int32_t>(b);
+      Vec<3>& center = balls[b].center;
+      const Vec<3> x = center + dice.number(0, balls[b].radius) * dice.direction();
+      if (!fits(x, balls[b].radius, id)) continue;
+      buckets.remove(center, id);
+      buckets.add(x, id);
+      center = x;
+    }
+  };
   double filled = 0;
   for (const double r : radii) {
-    if (progress.cancelled()) return cancelled_error();
     bool placed = false;
-    for (int t = 0; t < kTries && !placed; ++t) {
-      const Vec<3> x = dice.in(box);
-      if (specimen.zone->distance(x) > -r - options.gap ||
-          buckets.any(x, r + radii.front() + options.gap, [&](std::int32_t b) {
-            return (balls[b].center - x).norm() < balls[b].radius + r + options.gap;
-          }))
-        continue;
-      buckets.add(x, static_cast<std::int32_t>(balls.size()));
-      balls.push_back({x, r});
-      placed = true;
+    for (int round = 0; round <= kShakes && !placed; ++round) {
+      if (progress.cancelled()) return cancelled_error();
+      if (round > 0) shake();
+      for (int t = 0; t < kTries && !placed; ++t) {
+        const Vec<3> x = dice.in(box);
+        if (!fits(x, r, -1)) continue;
+        buckets.add(x, static_cast<std::int32_t>(balls.size()));
+        balls.push_back({x, r});
+        placed = true;
+      }
     }
     if (!placed) return no_room("balls", balls.size(), radii.size(), filled, specimen, wanted);
     filled += volume_of(r);

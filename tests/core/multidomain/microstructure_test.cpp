@@ -113,6 +113,21 @@ TEST(Inclusions, FillTheFractionAskedWithoutOverlap) {
   EXPECT_EQ(regions_of(*balls).back().name, "inclusion " + std::to_string(balls->size()));
 }
 
+TEST(Inclusions, AreShakenTogetherWhereChanceAloneFindsNoRoom) {
+  const Specimen specimen = box_specimen({0, 0, 0}, {10, 10, 10});
+  InclusionOptions options;
+  options.fraction = 0.33;
+  const auto balls = pack_balls(specimen, options);
+  ASSERT_TRUE(balls.ok()) << balls.error().message;
+  std::vector<Vec<3>> centers;
+  for (const BallInclusion& b : *balls) {
+    EXPECT_LE(specimen.zone->distance(b.center), -1);
+    centers.push_back(b.center);
+  }
+  EXPECT_EQ(centers.size(), 79u);  // 330 / (4 pi / 3)
+  EXPECT_GE(nearest_pair(centers), 2);
+}
+
 TEST(Inclusions, ByNumberToo) {
   InclusionOptions options;
   options.count = 25;
