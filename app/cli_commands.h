@@ -13,6 +13,7 @@ int run_generate(const GenerateCommand& command, Console& console);
 int run_check(const CheckCommand& command, Console& console);
 int run_info(const InfoCommand& command, Console& console);
 int run_sample(const SampleCommand& command, Console& console);
+int run_case(const CaseCommand& command, Console& console);
 int run_box(const BoxCommand& command, Console& console);
 int run_slice(const SliceCommand& command, Console& console);
 

@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
                                  [&](const CheckCommand& c) { return run_check(c, console); },
                                  [&](const InfoCommand& c) { return run_info(c, console); },
                                  [&](const SampleCommand& c) { return run_sample(c, console); },
+                                 [&](const CaseCommand& c) { return run_case(c, console); },
                                  [&](const BoxCommand& c) { return run_box(c, console); },
                                  [&](const SliceCommand& c) { return run_slice(c, console); }},
                       *command);

@@ -84,6 +84,16 @@ struct SampleCommand {
   std::string name, output;
 };
 
+/// A study made of zones. Unset options are those of the case, and belong to some of them only.
+struct CaseCommand {
+  std::string name, output;
+  int layers = 4;
+  std::uint64_t seed = 1;
+  std::optional<int> grains, relaxations, count;
+  std::optional<double> fraction, gap, length, angle;
+  std::vector<double> radius, orientation, size;
+};
+
 /// A box cut into simplices. Cells and corners: one value for all axes, or one for each.
 struct BoxCommand {
   int dimension = 3;
@@ -100,7 +110,7 @@ struct SliceCommand {
 };
 
 using Command = std::variant<MeshCommand, AdaptCommand, GenerateCommand, CheckCommand, InfoCommand,
-                             SampleCommand, BoxCommand, SliceCommand>;
+                             SampleCommand, CaseCommand, BoxCommand, SliceCommand>;
 
 /// Parses the command line. Help, version and errors of usage are printed here: the exit status is
 /// in `status` then, and nothing is returned.

@@ -34,7 +34,7 @@ ZoneDistance<D> Partition<D>::zone_at(int k, const Vec<D>& x, double reach) cons
   const double d2 = beyond.squaredNorm();
   if (d2 > reach * reach) {
     const double d = std::sqrt(d2);
-    return {d, beyond / d};
+    return {d, d < std::numeric_limits<double>::infinity() ? Vec<D>(beyond / d) : Vec<D>::Zero()};
   }
   return regions_[k].zone->at(x);
 }

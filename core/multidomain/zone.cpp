@@ -1,6 +1,8 @@
 #include "core/multidomain/zone.h"
 
 #include <algorithm>
+#include <map>
+#include <numbers>
 
 #include "core/geometry/locator.h"
 #include "core/geometry/winding.h"
@@ -16,30 +18,108 @@ Box<D> everywhere() {
   return box;
 }
 
+using Facets = std::vector<std::array<std::int32_t, 3>>;
+
+/// The facets by the first vertex at each position, for points may be unwelded, and each once.
+Facets welded(const ReferenceSurface<3>& surface) {
+  std::map<std::array<double, 3>, std::int32_t> first;
+  std::vector<std::int32_t> id;
+  for (const Vec<3>& p : surface.points)
+    id.push_back(
+        first.try_emplace({p[0], p[1], p[2]}, static_cast<std::int32_t>(id.size())).first->second);
+  Facets facets;
+  for (auto f : surface.facets) {
+    for (std::int32_t& v : f) v = id[v];
+    std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+    facets.push_back(f);
+  }
+  std::sort(facets.begin(), facets.end());
+  facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+  return facets;
+}
+
+/// Where a surface that should be closed ends: across such a hole its winding number w changes
+/// smoothly, and the border of {w > 1/2} is no part of the surface.
+class Rim {
+ public:
+  Rim(const std::vector<Vec<3>>& points, const Facets& facets) {
+    std::map<std::array<std::int32_t, 2>, int> ends;
+    for (const auto& f : facets)
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t from = f[k], to = f[(k + 1) % 3];
+        if (from != to) ends[{std::min(from, to), std::max(from, to)}] += from < to ? 1 : -1;
+      }
+    for (const auto& [edge, times] : ends) {
+      if (times == 0) continue;
+      const Vec<3>&p = points[edge[0]], &q = points[edge[1]];
+      pieces_.push_back({(p + q) / 2, (q - p).norm() / 2, std::abs(times)});
+    }
+  }
+  bool empty() const { return pieces_.empty(); }
+  /// A lower bound of the distance to where w = 1/2, at most that to the surface, `near`. The
+  /// gradient of w is that of the rim's solid angle, |grad w| <= sum of length / (4 pi d^2) (law of
+  /// Biot and Savart).
+  double level_distance(const Vec<3>& x, double w, double near) const {
+    double steepness = 0, nearest = std::numeric_limits<double>::infinity();
+    for (const Piece& piece : pieces_) {
+      const double d = std::max((x - piece.middle).norm() - piece.half, near);
+      nearest = std::min(nearest, d);
+      steepness += piece.times * piece.half / (2 * std::numbers::pi * d * d);
+    }
+    // The largest s with s * steepness / (1 - s / nearest)^2 <= |w - 1/2|, and s <= near.
+    const double reach = std::abs(w - 0.5) / steepness;
+    const double b = 1 + nearest / (2 * reach);
+    return std::min(near, nearest / (b + std::sqrt(b * b - 1)));
+  }
+
+ private:
+  struct Piece {
+    Vec<3> middle;
+    double half;
+    int times;
+  };
+  std::vector<Piece> pieces_;
+};
+
 template <int D>
 class SurfaceZone : public Zone<D> {
  public:
   SurfaceZone(const ReferenceSurface<D>& surface, Inside inside) : locator_(surface) {
     for (const Vec<D>& p : surface.points) box_.add(p);
     if constexpr (D == 3)
-      if (inside == Inside::winding)
-        winding_ = std::make_unique<WindingNumber>(surface.points, surface.facets);
+      if (inside == Inside::winding && !locator_.empty()) {
+        const Facets facets = welded(surface);
+        winding_ = std::make_unique<WindingNumber>(surface.points, facets);
+        rim_ = std::make_unique<Rim>(surface.points, facets);
+      }
   }
   ZoneDistance<D> at(const Vec<D>& x) const override {
     if (locator_.empty()) return {};
-    if (!winding_) {
-      const SignedNearest<D> near = locator_.signed_nearest(x);
-      return {near.distance, away(x, near.foot.point, near.distance, near.pseudo_normal)};
-    }
-    const Nearest<D> near = *locator_.nearest(x);
-    double d = std::sqrt(near.distance2);
     if constexpr (D == 3)
-      if ((*winding_)(x) > 0.5) d = -d;
-    return {d, away(x, near.point, d, locator_.normal(near.facet))};
+      if (winding_) return at_by_winding(x);
+    const SignedNearest<D> near = locator_.signed_nearest(x);
+    return {near.distance, away(x, near.foot.point, near.distance, near.pseudo_normal)};
   }
   Box<D> box() const override { return box_; }
 
  private:
+  ZoneDistance<3> at_by_winding(const Vec<3>& x) const {
+    const Nearest<3> near = *locator_.nearest(x);
+    const double w = (*winding_)(x), d = std::sqrt(near.distance2);
+    const bool open = !rim_->empty() && d > 0;
+    // What bulges out of holes ends with the surface's box.
+    const double side = open ? std::min((x - box_.lo).minCoeff(), (box_.hi - x).minCoeff()) : d;
+    const double sign = w > 0.5 && side >= 0 ? -1 : 1;
+    double level = open ? rim_->level_distance(x, w, d) : d;
+    if (w > 0.5 && open) level = side >= 0 ? std::min(level, side) : std::min(d, -side);
+    if (level == d) return {sign * d, away(x, near.point, sign * d, locator_.normal(near.facet))};
+    Vec<3> falls;
+    for (int k = 0; k < 3; ++k) {
+      const Vec<3> step = 1e-2 * d * Vec<3>::Unit(k);
+      falls[k] = (*winding_)(x - step) - (*winding_)(x + step);
+    }
+    return {sign * level, falls.normalized()};
+  }
   static Vec<D> away(const Vec<D>& x, const Vec<D>& foot, double d, const Vec<D>& on_surface) {
     const Vec<D> to = x - foot;
     const double length = to.norm();
@@ -48,6 +128,7 @@ class SurfaceZone : public Zone<D> {
   }
   Locator<D> locator_;
   std::unique_ptr<WindingNumber> winding_;
+  std::unique_ptr<Rim> rim_;
   Box<D> box_;
 };
 
@@ -152,23 +233,33 @@ class VoronoiZone : public Zone<D> {
  public:
   VoronoiZone(const std::vector<Vec<D>>& seeds, std::size_t cell) : seed_(seeds[cell]) {
     for (std::size_t s = 0; s < seeds.size(); ++s)
-      if (s != cell) others_.push_back(seeds[s]);
+      if (s != cell) {
+        const double gap = (seeds[s] - seed_).norm();
+        planes_.push_back({(seeds[s] - seed_) / gap, gap / 2});
+      }
+    std::stable_sort(planes_.begin(), planes_.end(),
+                     [](const Plane& a, const Plane& b) { return a.offset < b.offset; });
   }
   ZoneDistance<D> at(const Vec<D>& x) const override {
     ZoneDistance<D> best{-std::numeric_limits<double>::infinity()};
-    const double own = (x - seed_).squaredNorm();
-    for (const Vec<D>& other : others_) {
-      const Vec<D> between = other - seed_;
-      const double d = (own - (x - other).squaredNorm()) / (2 * between.norm());
-      if (d > best.distance) best = {d, between.normalized()};
+    const Vec<D> from_seed = x - seed_;
+    const double far = from_seed.norm();
+    for (const Plane& plane : planes_) {
+      if (far - plane.offset <= best.distance) break;  // neither this nor any other beyond it
+      const double d = plane.normal.dot(from_seed) - plane.offset;
+      if (d > best.distance) best = {d, plane.normal};
     }
     return best;
   }
   Box<D> box() const override { return everywhere<D>(); }
 
  private:
+  struct Plane {
+    Vec<D> normal;
+    double offset;  // from the seed
+  };
   Vec<D> seed_;
-  std::vector<Vec<D>> others_;
+  std::vector<Plane> planes_;
 };
 
 /// The zone of which the distance, times `sign`, is the largest.

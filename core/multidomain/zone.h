@@ -23,8 +23,8 @@ template <int D>
 class Zone {
  public:
   virtual ~Zone() = default;
-  /// The distance's absolute value is at most that to the boundary, and equal to it unless the zone
-  /// was made of others.
+  /// The distance's absolute value is at most that to the boundary, and equal to it but outside of
+  /// Voronoi cells, near holes of open surfaces and for zones made of others.
   virtual ZoneDistance<D> at(const Vec<D>& x) const = 0;
   double distance(const Vec<D>& x) const { return at(x).distance; }
   /// Contains the zone; without end where the zone is.

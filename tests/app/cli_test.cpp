@@ -1,84 +1,21 @@
-#include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/wait.h>
 
-#include <cstdio>
 #include <map>
-#include <nlohmann/json.hpp>
 
-#include "core/base/atomic_file.h"
 #include "core/io/export_certificate.h"
 #include "core/io/medit.h"
 #include "core/io/msh.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/mesh/validate.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/cli_fixture.h"
 
 namespace lamella {
 namespace {
 
-using Names = std::vector<std::string>;
-using nlohmann::json;
-
-/// The batch program run in a folder of its own, as a user would.
-class Cli : public testing::Test {
- protected:
-  test::TemporaryFolder folder;
-  std::string out;  ///< standard output of the last run
-  std::string err;  ///< standard error of the last run
-
-  int run(const std::string& arguments) { return finish(start(arguments)); }
-  FILE* start(const std::string& arguments) {
-    const std::string command = "cd '" + folder.path().string() + "' && exec " + LAMELLA_BIN_DIR +
-                                "/lamella-cli " + arguments + " 2>'" + errors_.string() + "'";
-    // The first line is the process id, which exec keeps.
-    return ::popen(("echo $$; " + command).c_str(), "r");
-  }
-  int finish(FILE* pipe) {
-    out.clear();
-    char buffer[4096];
-    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
-    const std::size_t line = out.find('\n');
-    if (out.find_first_not_of("0123456789") == line) out.erase(0, line + 1);
-    const int status = ::pclose(pipe);
-    err = read_file(errors_).value();
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::vector<json> lines() const {
-    std::vector<json> objects;
-    for (std::size_t at = 0; at < out.size();) {
-      const std::size_t end = std::min(out.find('\n', at), out.size());
-      objects.push_back(json::parse(out.substr(at, end - at)));
-      at = end + 1;
-    }
-    return objects;
-  }
-  void write(const std::string& name, const std::string& bytes) {
-    ASSERT_TRUE(write_file(folder / name, bytes).ok());
-  }
-  /// A closed box as ASCII STL.
-  static std::string box_stl(double x, double y, double z) {
-    const SimplexMesh<3> mesh = box_mesh<3>({1, 1, 1}, Vec<3>::Zero(), Vec<3>(x, y, z));
-    std::string text = "solid box\n";
-    for (const auto& facet : mesh.facets) {
-      text += "facet normal 0 0 0\nouter loop\n";
-      for (const Vec<3>& p : mesh.corners(facet))
-        text += "vertex " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " +
-                std::to_string(p[2]) + "\n";
-      text += "endloop\nendfacet\n";
-    }
-    return text + "endsolid box\n";
-  }
-
- private:
-  test::TemporaryFolder elsewhere_;
-  std::filesystem::path errors_ = elsewhere_ / "errors";
-};
-
 TEST_F(Cli, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(run("--help"), 0);
   for (const std::string name :
-       {"mesh", "adapt", "generate", "check", "info", "sample", "box", "slice", "130"})
+       {"mesh", "adapt", "generate", "check", "info", "sample", "case", "box", "slice", "130"})
     EXPECT_NE(out.find(name), std::string::npos) << name;
   EXPECT_EQ(run("mesh --help"), 0);
   EXPECT_NE(out.find("--chord-tolerance"), std::string::npos);
@@ -119,6 +56,14 @@ TEST_F(Cli, WrongUsageIsStatus2AndWritesNothing) {
         "adapt a.mesh --metric uniform --memory -1 -o b.mesh",
         "sample no_such_part",
         "check a.mesh --layers 0",
+        "case marbles",
+        "case inclusions --fraction 0.1 --count 3",
+        "case inclusions --grains 3",
+        "case inclusions --radius 1,2,3",
+        "case fibers --orientation 1,0",
+        "case two-balls --size 1,1,1",
+        "case polycrystal --size 1,1",
+        "case tilted-plate --angle steep",
         "box -o a.mesh",
         "box --cells 0 -o a.mesh",
         "box --cells 2,2 -o a.mesh",
