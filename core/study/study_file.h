@@ -9,8 +9,8 @@
 namespace lamella {
 
 /// A study as plain JSON, schema version 1: name, unit ("mm"), inputs (relative to the study's
-/// folder), bodies, zones, domain, options, sizing, groups and cuts, named as the members of Study. What is unset
-/// is left out.
+/// folder), bodies, zones, domain, options, sizing, groups and cuts, named as the members of Study.
+/// What is unset is left out.
 std::string study_to_json(const Study& study);
 
 /// Reads what `study_to_json` writes; members left out keep their defaults. `where` names the
