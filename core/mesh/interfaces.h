@@ -4,11 +4,24 @@
 
 namespace lamella {
 
-/// The mesh with the faces between two bodies as facets too, behind its own: listed outward from
-/// the body of lower id, in a group (behind the mesh's own) and with a CAD face for each pair of
-/// bodies. Its facets are then no longer the boundary of its elements.
+/// A mesh with all faces between two bodies among its facets: first those of the boundary, then the
+/// interfaces that were listed already, then the others.
 template <int D>
-SimplexMesh<D> with_interfaces(const SimplexMesh<D>& mesh);
+struct WithInterfaces {
+  SimplexMesh<D> mesh;
+  std::size_t outer = 0;  ///< facets of the boundary
+  std::size_t given = 0;  ///< facets that were listed, outer ones among them
+};
+
+/// Lists the faces between two bodies outward from the body of lower id. Those that the mesh lists
+/// keep their group and CAD face, the others get a group (behind the mesh's own) and a CAD face for
+/// each pair of bodies.
+template <int D>
+WithInterfaces<D> list_interfaces(const SimplexMesh<D>& mesh);
+template <int D>
+SimplexMesh<D> with_interfaces(const SimplexMesh<D>& mesh) {
+  return list_interfaces(mesh).mesh;
+}
 
 /// Inner faces whose vertices all lie on the boundary or on interfaces (C.1.1): through them one
 /// element reaches from wall to wall, and a flow with zero velocity at the walls is blocked there.

@@ -325,10 +325,10 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
     hi = hi.cwiseMax(mesh.points[n]);
   }
   const double scale = (hi - lo).norm();
-  const SimplexMesh<D> whole = with_interfaces(mesh);
+  const auto [whole, outer, given] = list_interfaces(mesh);
   const BoundaryModel<D> model(whole, surface, params.chord_tolerance.value_or(1e-3 * scale),
                                params.feature_angle, params.frozen_groups, params.frozen_bodies,
-                               mesh.facets.size());
+                               outer, given);
   Adaption<D> adaption(whole, metric, model, params, metric_at, scale);
   AdaptReport& report = adaption.report();
   forecast(mesh, adaption.work(), report);
