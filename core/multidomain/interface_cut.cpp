@@ -26,7 +26,7 @@ constexpr double close = 0.12;
 /// Of the tolerance: nodes this near to a border lie on it.
 constexpr double on_share = 0.02;
 /// Of the tolerance: how far an edge may dip through a border.
-constexpr double dip_share = 0.25;
+constexpr double dip_share = 0.03;
 /// Of the tolerance: what the straight pieces of a feature line may take.
 constexpr double chain_share = 0.2;
 /// Rounds of looking for edges that cross a border.
@@ -59,6 +59,9 @@ class Cutter {
     phi_.assign(mesh.points.size(), 0);
     locked_.assign(mesh.points.size(), 0);
     old_nodes_ = mesh.node_count();
+    Box<3> box;
+    for (std::size_t n = 1; n < mesh.points.size(); ++n) box.add(mesh.points[n]);
+    exact_ = 1e-10 * (box.hi - box.lo).norm();
   }
 
   bool cut(int zone, const ReferenceSurface<3>& surface, const Progress& progress) {
@@ -226,7 +229,7 @@ class Cutter {
     for (int k : order) {
       const NodeId n = nodes[k];
       const double d = (at(n) - x).norm();
-      if (d <= 1e-9 * locate_scale_ || (locked_[n] && d <= 0.1 * on_)) {
+      if (d <= exact_ || (locked_[n] && d <= 0.1 * on_)) {
         if (!locked_[n] && hold_allows(std::array{n}, x)) topo_.points[n] = x;
         return lock(n);
       }
@@ -262,7 +265,7 @@ class Cutter {
         for (double& s : share) s /= sum;
         if (size < 4) {
           const double off = (x - nearest_in(nodes, c.bits, weights)).norm();
-          const bool there = off <= 1e-9 * locate_scale_;
+          const bool there = off <= exact_;
           if (!there && c.far2 > close * close) continue;
           if (!there && !hold_allows(of, x)) continue;
           if (!there && size == 2 && features_.contains(key(of[0], of[1]))) continue;
@@ -337,12 +340,6 @@ class Cutter {
   }
 
   bool follow_features(const ReferenceSurface<3>& surface, const Progress& progress) {
-    Vec<3> lo = topo_.points[1], hi = lo;
-    for (std::size_t n = 1; n < topo_.points.size(); ++n) {
-      lo = lo.cwiseMin(topo_.points[n]);
-      hi = hi.cwiseMax(topo_.points[n]);
-    }
-    locate_scale_ = (hi - lo).norm();
     const auto chains = feature_chains(surface, chain_share * params_.tolerance);
     for (std::int32_t c : surface.corners) {
       if (progress.cancelled()) return false;
@@ -405,7 +402,7 @@ class Cutter {
     for (int step = 0; step < 4000; ++step) {
       const Vec<3> way = x - at(now);
       const double left = way.norm();
-      if (left <= std::max(1e-9 * locate_scale_, 0.1 * on_)) return {now, true};
+      if (left <= std::max(exact_, 0.1 * on_)) return {now, true};
       // The element into which the way leads: x = now + sum w_k (p_k - now).
       double best = -1e-7;
       std::int32_t into = -1;
@@ -476,8 +473,7 @@ class Cutter {
       // Far from the box its distance tells enough.
       const double beyond = (x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm();
       phi_[n] = metric_[n].quad(Vec<3>::Constant(beyond)) > 100 ? beyond : phi_at(x);
-      const bool held = locked_[n] || !hold(std::array{n}).free();
-      if (std::abs(phi_[n]) <= (held ? 5 * on_ : on_)) phi_[n] = 0;
+      if (std::abs(phi_[n]) <= exact_ || (locked_[n] && std::abs(phi_[n]) <= on_)) phi_[n] = 0;
     });
   }
 
@@ -502,6 +498,9 @@ class Cutter {
       if (!x || metric_[n].quad(*x - at(n)) > 1) continue;
       if (move(n, *x)) phi_[n] = 0;
     }
+    // What may not move but is there within a share of the tolerance is left there.
+    for (NodeId n : nodes_)
+      if (std::abs(phi_[n]) <= on_) phi_[n] = 0;
     return true;
   }
 
@@ -624,10 +623,10 @@ class Cutter {
   const MetricFunction<3>& metric_at_;
   const std::vector<Element>& initial_;
   ElementLocator<3> locator_;
-  double on_;  ///< mm
+  double on_;         ///< mm: what is this near to a border lies on it
+  double exact_ = 0;  ///< mm: points this near are one
   MetricCarrier<3> carrier_{MetricMean::size};
   int zone_ = 0;
-  double locate_scale_ = 1;
   std::int32_t first_interface_ = 0;  ///< label of the interface of zone 0; below: facets
   Topology<3> topo_;
   std::vector<Packed<3>> metric_;  ///< [node]
