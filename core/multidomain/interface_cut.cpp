@@ -25,8 +25,12 @@ constexpr double poor_quality = 0.05;
 constexpr double close = 0.12;
 /// Of the tolerance: nodes this near to a border lie on it.
 constexpr double on_share = 0.02;
-/// Of the tolerance: how far an edge may dip through a border.
+/// Of the tolerance: how far an edge may dip through a border, and through a smooth one, where the
+/// chord of a curved border does.
 constexpr double dip_share = 0.03;
+constexpr double smooth_dip_share = 0.3;
+/// Cosine between normals of a border above which it is smooth.
+constexpr double smooth_turn = 0.8;
 /// Of the tolerance: what the straight pieces of a feature line may take.
 constexpr double chain_share = 0.2;
 /// Rounds of looking for edges that cross a border.
@@ -511,6 +515,7 @@ class Cutter {
     if (std::abs(phi_[a]) + std::abs(phi_[b]) >= length && phi_[a] * phi_[b] >= 0)
       return std::nullopt;
     const double dip = dip_share * params_.tolerance;
+    double deep = std::numeric_limits<double>::infinity();
     double t0 = 0, f0 = phi_[a], t1 = 1, f1 = phi_[b];
     if (!(f0 * f1 < 0)) {
       constexpr int samples = 8;
@@ -529,6 +534,7 @@ class Cutter {
         last = f;
       }
       if (!found) return std::nullopt;
+      deep = std::min(std::abs(f0), std::abs(f1));
     }
     // Regula falsi, Illinois.
     double t = t0;
@@ -545,6 +551,13 @@ class Cutter {
       }
       t1 = t;
       f1 = f;
+    }
+    if (deep <= smooth_dip_share * params_.tolerance) {
+      const Zone<3>& zone = partition_.zone(zone_);
+      const Vec<3> normal = zone.at(at(a) + t * e).normal;
+      if (normal.dot(zone.at(at(a)).normal) > smooth_turn &&
+          normal.dot(zone.at(at(b)).normal) > smooth_turn)
+        return std::nullopt;
     }
     return t;
   }
