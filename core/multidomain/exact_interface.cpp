@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
+#include <optional>
 
 #include "core/base/parallel.h"
 #include "core/geometry/locator.h"
 #include "core/geometry/soup.h"
 #include "core/mesh/adjacency.h"
+#include "core/multidomain/chord_metric.h"
 #include "core/multidomain/hold.h"
 #include "core/multidomain/interface_cut.h"
 
@@ -18,6 +19,8 @@ namespace {
 constexpr double curve_share = 0.1;
 /// A facet must not look away from the CAD face it is put on.
 constexpr double face_turn = 0.4;
+/// Growth of the metric's determinant that calls for a finer mesh before it is cut.
+constexpr double finer_share = 1.5;
 
 std::int32_t face_count(const std::vector<std::int32_t>& facet_face) {
   std::int32_t faces = 0;
@@ -269,18 +272,43 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   cut_params.tolerance = *adapt_params.chord_tolerance;
   cut_params.snap = params.snap;
   cut_params.threads = adapt_params.threads;
-  Result<CutMesh> cut = cut_interfaces(mesh, metric, partition, surfaces, cut_params,
-                                       progress.portion(0, 0.3), metric_at);
+  const double tolerance = cut_params.tolerance;
+  MetricFunction<3> chords_at;
+  if (metric_at)
+    chords_at = [&](const Vec<3>& x) { return with_chords(metric_at(x), partition, x, tolerance); };
+  MetricField<3> chords(mesh.points.size(), Metric<3>::Identity());
+  std::vector<char> finer(mesh.points.size(), 0);
+  if (!parallel_each(mesh.node_count(), adapt_params.threads, progress.portion(0, 0.05),
+                     [&](std::size_t i) {
+                       const Vec<3>& x = mesh.points[i + 1];
+                       const Metric<3> m = metric_at ? metric_at(x) : metric[i + 1];
+                       chords[i + 1] = with_chords(m, partition, x, tolerance);
+                       finer[i + 1] = chords[i + 1].determinant() > finer_share * m.determinant();
+                     }))
+    return cancelled_error();
+  // Chords that are too long are made short before there is an interface to be held.
+  std::optional<Adapted<3>> refined;
+  if (std::count(finer.begin(), finer.end(), 1) > 0) {
+    Result<Adapted<3>> r =
+        adapt<3>(mesh, chords, nullptr, adapt_params, progress.portion(0.05, 0.4), chords_at);
+    if (!r) return r.error();
+    if (r->report.cancelled) return cancelled_error();
+    refined = std::move(*r);
+  }
+  const SimplexMesh<3>& fuzzy = refined ? refined->mesh : mesh;
+  const MetricField<3>& fuzzy_metric = refined ? refined->metric : chords;
+  Result<CutMesh> cut = cut_interfaces(fuzzy, fuzzy_metric, partition, surfaces, cut_params,
+                                       progress.portion(0.4, 0.5), chords_at);
   if (!cut) return cut.error();
   Exact out;
   out.snapped = cut->snapped;
   out.added = cut->added;
   out.lost = cut->lost;
-  out.surface = Finish(mesh, partition, surfaces, *cut, cut_params.tolerance,
+  out.surface = Finish(fuzzy, partition, surfaces, *cut, cut_params.tolerance,
                        adapt_params.feature_angle)
                     .run();
   Result<Adapted<3>> adapted = adapt<3>(cut->mesh, cut->metric, &out.surface, adapt_params,
-                                        progress.portion(0.3, 1), metric_at);
+                                        progress.portion(0.5, 1), chords_at);
   if (!adapted) return adapted.error();
   out.mesh = std::move(adapted->mesh);
   out.metric = std::move(adapted->metric);

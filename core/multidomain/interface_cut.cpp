@@ -35,6 +35,11 @@ constexpr double smooth_turn = 0.8;
 constexpr double chain_share = 0.2;
 /// Rounds of looking for edges that cross a border.
 constexpr int split_rounds = 12;
+/// Of the tolerance: how far the middle of an interface's edge may lie from the border; facets add
+/// to it.
+constexpr double bend_share = 0.6;
+/// Rounds of halving edges that are too far.
+constexpr int bend_rounds = 4;
 
 using Element = std::array<NodeId, 4>;
 using Weights = std::array<double, 4>;
@@ -73,9 +78,9 @@ class Cutter {
     if (!follow_features(surface, progress.portion(0, 0.4))) return false;
     if (!measure(progress.portion(0.4, 0.5))) return false;
     if (!snap(progress.portion(0.5, 0.7))) return false;
-    if (!split(progress.portion(0.7, 1))) return false;
+    if (!split(progress.portion(0.7, 0.9))) return false;
     tag();
-    return true;
+    return bend(progress.portion(0.9, 1));
   }
 
   CutMesh result(const SimplexMesh<3>& original) const {
@@ -629,6 +634,47 @@ class Cutter {
             break;
           }
       }
+  }
+
+  /// Splits the edges of the zone's interface whose middle is too far from the border there, until
+  /// the chords keep the tolerance.
+  bool bend(const Progress& progress) {
+    const std::int32_t label = first_interface_ + zone_;
+    std::size_t first = 1;
+    for (int round = 0; round < bend_rounds; ++round) {
+      if (progress.cancelled()) return false;
+      progress.report(static_cast<double>(round) / bend_rounds);
+      std::vector<std::array<NodeId, 2>> edges;
+      for (std::int32_t e = 0; e < count(); ++e) {
+        if (!topo_.alive(e) || !topo_.is_virtual(e) || topo_.label[e] != label) continue;
+        const Element& v = topo_.elements[e];
+        for (int i = 1; i < 4; ++i) {
+          const NodeId a = v[i], b = v[1 + i % 3];
+          if (static_cast<std::size_t>(std::max(a, b)) >= first) edges.push_back(key(a, b));
+        }
+      }
+      std::sort(edges.begin(), edges.end());
+      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+      std::vector<double> off(edges.size(), 0);
+      if (!parallel_each(edges.size(), params_.threads, {}, [&](std::size_t i) {
+            off[i] = std::abs(phi_at(0.5 * (at(edges[i][0]) + at(edges[i][1]))));
+          }))
+        return false;
+      first = topo_.points.size();
+      std::vector<std::pair<double, std::size_t>> far;
+      for (std::size_t i = 0; i < edges.size(); ++i)
+        if (off[i] > bend_share * params_.tolerance) far.emplace_back(-off[i], i);
+      std::sort(far.begin(), far.end());
+      for (const auto& [negative, i] : far) {
+        const auto [a, b] = edges[i];
+        const Vec<3> x = 0.5 * (at(a) + at(b));
+        const auto y = hold(edges[i]).settle(partition_, x, on_);
+        if (!y || (*y - x).norm() > 0.3 * (at(b) - at(a)).norm()) continue;
+        split_at(edges[i], *y, std::array{0.5, 0.5});
+      }
+      if (topo_.points.size() == first) break;
+    }
+    return true;
   }
 
   const Partition<3>& partition_;
