@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/mesh/adjacency.h"
+#include "core/mesh/boundary.h"
 
 namespace lamella {
 
@@ -69,6 +70,32 @@ WithInterfaces<D> list_interfaces(const SimplexMesh<D>& mesh) {
 }
 
 template <int D>
+SimplexMesh<D> drop_body(const SimplexMesh<D>& mesh, std::int32_t body,
+                         std::vector<NodeId>* new_id) {
+  SimplexMesh<D> rest = mesh;
+  rest.elements.clear();
+  rest.element_body.clear();
+  rest.bodies.erase(rest.bodies.begin() + body);
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    const std::int32_t b = mesh.element_body[e];
+    if (b == body) continue;
+    rest.elements.push_back(mesh.elements[e]);
+    rest.element_body.push_back(b > body ? b - 1 : b);
+  }
+  // Those that are listed between two bodies yet are no boundary: rebuilding would drop them.
+  const auto [listed, outer, given] = list_interfaces(rest);
+  rebuild_facets(rest);
+  for (std::size_t f = outer; f < given; ++f) {
+    rest.facets.push_back(listed.facets[f]);
+    rest.facet_group.push_back(listed.facet_group[f]);
+    rest.facet_face.push_back(listed.facet_face[f]);
+  }
+  std::vector<NodeId> ids = compact_nodes(rest);
+  if (new_id) *new_id = std::move(ids);
+  return rest;
+}
+
+template <int D>
 std::vector<typename SimplexMesh<D>::Facet> blocking_faces(const SimplexMesh<D>& mesh) {
   const auto uses = face_uses<D>(mesh.elements, mesh.points.size());
   const auto wall = [&](std::size_t first, std::size_t last) {
@@ -90,8 +117,9 @@ std::vector<typename SimplexMesh<D>::Facet> blocking_faces(const SimplexMesh<D>&
   return found;
 }
 
-#define LAMELLA_INSTANTIATE(D)                                          \
-  template WithInterfaces<D> list_interfaces<D>(const SimplexMesh<D>&); \
+#define LAMELLA_INSTANTIATE(D)                                                                     \
+  template WithInterfaces<D> list_interfaces<D>(const SimplexMesh<D>&);                            \
+  template SimplexMesh<D> drop_body<D>(const SimplexMesh<D>&, std::int32_t, std::vector<NodeId>*); \
   template std::vector<SimplexMesh<D>::Facet> blocking_faces<D>(const SimplexMesh<D>&);
 LAMELLA_INSTANTIATE(2)
 LAMELLA_INSTANTIATE(3)

@@ -23,6 +23,13 @@ SimplexMesh<D> with_interfaces(const SimplexMesh<D>& mesh) {
   return list_interfaces(mesh).mesh;
 }
 
+/// The mesh without the elements of one body. What its faces towards other bodies were listed as,
+/// group and CAD face, they are as boundary; those not listed get group and face 0. `new_id` gets
+/// the node that each node of `mesh` became, -1 where it is gone (compact_field).
+template <int D>
+SimplexMesh<D> drop_body(const SimplexMesh<D>& mesh, std::int32_t body,
+                         std::vector<NodeId>* new_id = nullptr);
+
 /// Inner faces whose vertices all lie on the boundary or on interfaces (C.1.1): through them one
 /// element reaches from wall to wall, and a flow with zero velocity at the walls is blocked there.
 /// Each is listed with ascending node ids.

@@ -12,7 +12,7 @@ constexpr double edge_share = 0.5;
 /// Of a step along the border: how far it may rise for the border to be a parabola.
 constexpr double parabola = 0.08;
 /// Cosine between normals a step apart below which there is an edge between.
-constexpr double sharp_turn = 0.7;
+constexpr double sharp_turn = 0.85;
 
 }  // namespace
 
@@ -44,24 +44,25 @@ Metric<3> with_chords(const Metric<3>& metric, const Partition<3>& partition, co
   constexpr int directions = 4;
   double h = largest;
   std::array<double, directions> fall{};  // kappa h^2 / 8
-  for (int i = 0; i < 10; ++i, h *= 0.6) {
+  bool smooth = false;
+  for (int i = 0; i < 12 && !smooth; ++i) {
+    if (i > 0) h *= 0.6;
+    smooth = true;
     double most = 0;
     for (int k = 0; k < directions; ++k) {
       const double angle = std::numbers::pi * k / directions;
       const Vec<3> t = std::cos(angle) * axes.col(0) + std::sin(angle) * axes.col(1);
-      double sum = 0;
-      int count = 0;
+      fall[k] = 0;
       for (double side : {-0.5, 0.5}) {
         const ZoneDistance<3> d = zone->at(foot + side * h * t);
-        if (d.normal.dot(near.normal) < sharp_turn) continue;
-        sum += d.distance;
-        ++count;
+        fall[k] += 0.5 * d.distance;
         most = std::max(most, std::abs(d.distance));
+        smooth = smooth && d.normal.dot(near.normal) >= sharp_turn;
       }
-      fall[k] = count > 0 ? sum / count : 0;
     }
-    if (most <= std::max(parabola * h, edge_share * tolerance)) break;
+    smooth = smooth && most <= parabola * h;
   }
+  if (!smooth) return metric;  // on an edge
   // Least squares of a cos^2 + 2 b cos sin + c sin^2 over the directions.
   const double mean = (fall[0] + fall[1] + fall[2] + fall[3]) / 4;
   const double half = (fall[0] - fall[2]) / 2, cross = (fall[1] - fall[3]) / 2;

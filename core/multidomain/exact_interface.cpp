@@ -71,7 +71,8 @@ ReferenceSurface<3> surface_of(const SimplexMesh<3>& mesh, std::size_t first, st
 using Edge = std::array<std::int32_t, 2>;
 
 /// The facets around each edge.
-std::map<Edge, std::vector<std::size_t>> edges_of(const std::vector<std::array<NodeId, 3>>& facets) {
+std::map<Edge, std::vector<std::size_t>> edges_of(
+    const std::vector<std::array<NodeId, 3>>& facets) {
   std::map<Edge, std::vector<std::size_t>> edges;
   for (std::size_t f = 0; f < facets.size(); ++f)
     for (int k = 0; k < 3; ++k) {
@@ -81,10 +82,10 @@ std::map<Edge, std::vector<std::size_t>> edges_of(const std::vector<std::array<N
   return edges;
 }
 
-/// The boundary of the mesh with its edges: between faces, groups, and where facets meet at an angle.
+/// The boundary of the mesh with its edges: between faces, groups, and where facets meet at an
+/// angle.
 ReferenceSurface<3> wall_of(const SimplexMesh<3>& mesh, double feature_angle) {
-  ReferenceSurface<3> s =
-      surface_of(mesh, 0, mesh.facets.size(), [](std::size_t) { return true; });
+  ReferenceSurface<3> s = surface_of(mesh, 0, mesh.facets.size(), [](std::size_t) { return true; });
   const auto normal = [&](std::size_t f) {
     return facet_normal<3>(mesh.corners(mesh.facets[f])).normalized().eval();
   };
@@ -304,9 +305,9 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   out.snapped = cut->snapped;
   out.added = cut->added;
   out.lost = cut->lost;
-  out.surface = Finish(fuzzy, partition, surfaces, *cut, cut_params.tolerance,
-                       adapt_params.feature_angle)
-                    .run();
+  out.surface =
+      Finish(fuzzy, partition, surfaces, *cut, cut_params.tolerance, adapt_params.feature_angle)
+          .run();
   Result<Adapted<3>> adapted = adapt<3>(cut->mesh, cut->metric, &out.surface, adapt_params,
                                         progress.portion(0.5, 1), chords_at);
   if (!adapted) return adapted.error();

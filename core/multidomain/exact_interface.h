@@ -6,7 +6,8 @@
 namespace lamella {
 
 struct ExactParams {
-  AdaptParams adapt;  ///< of the mesh that was cut; its chord tolerance holds for the interfaces too
+  AdaptParams
+      adapt;  ///< of the mesh that was cut; its chord tolerance holds for the interfaces too
   double snap = 0.4;  ///< of the size across: nodes nearer to a border are moved onto it
 };
 

@@ -170,8 +170,7 @@ class Cutter {
   NodeId add_node(const Vec<3>& x, std::span<const NodeId> of, std::span<const double> weights) {
     const NodeId n = topo_.add_node(x);
     Packed<3> c = Packed<3>::zero();
-    for (std::size_t k = 0; k < of.size(); ++k)
-      c.add(weights[k], carrier_.carry(metric_[of[k]]));
+    for (std::size_t k = 0; k < of.size(); ++k) c.add(weights[k], carrier_.carry(metric_[of[k]]));
     metric_.push_back(metric_at_ ? Packed<3>::from(metric_at_(x)) : carrier_.metric(c));
     phi_.push_back(0);
     locked_.push_back(0);
@@ -602,7 +601,8 @@ class Cutter {
         if (!h.free()) {
           h.add_zone(zone_);
           const auto y = h.settle(partition_, x, on_);
-          if (y && (*y - x).norm() < 0.3 * (at(b) - at(a)).norm()) n = split_at(edges[i], *y, share);
+          if (y && (*y - x).norm() < 0.3 * (at(b) - at(a)).norm())
+            n = split_at(edges[i], *y, share);
         }
         if (n == 0) split_at(edges[i], x, share);
       }

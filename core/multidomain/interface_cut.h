@@ -22,8 +22,8 @@ struct CutMesh {
   /// Elements with their region as body. Facets: the boundary, then the faces between regions, each
   /// outward from the region of lower number, with group and CAD face 0.
   SimplexMesh<3> mesh;
-  MetricField<3> metric;  ///< [node]
-  std::size_t outer = 0;  ///< facets of the boundary
+  MetricField<3> metric;                        ///< [node]
+  std::size_t outer = 0;                        ///< facets of the boundary
   std::vector<std::array<NodeId, 2>> features;  ///< edges that lie on feature edges of the surfaces
   std::size_t snapped = 0;                      ///< nodes moved
   std::size_t added = 0;                        ///< nodes added
