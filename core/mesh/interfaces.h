@@ -4,11 +4,31 @@
 
 namespace lamella {
 
-/// The mesh with the faces between two bodies as facets too, behind its own: listed outward from
-/// the body of lower id, in a group (behind the mesh's own) and with a CAD face for each pair of
-/// bodies. Its facets are then no longer the boundary of its elements.
+/// A mesh with all faces between two bodies among its facets: first those of the boundary, then the
+/// interfaces that were listed already, then the others.
 template <int D>
-SimplexMesh<D> with_interfaces(const SimplexMesh<D>& mesh);
+struct WithInterfaces {
+  SimplexMesh<D> mesh;
+  std::size_t outer = 0;  ///< facets of the boundary
+  std::size_t given = 0;  ///< facets that were listed, outer ones among them
+};
+
+/// Lists the faces between two bodies outward from the body of lower id. Those that the mesh lists
+/// keep their group and CAD face, the others get a group (behind the mesh's own) and a CAD face for
+/// each pair of bodies.
+template <int D>
+WithInterfaces<D> list_interfaces(const SimplexMesh<D>& mesh);
+template <int D>
+SimplexMesh<D> with_interfaces(const SimplexMesh<D>& mesh) {
+  return list_interfaces(mesh).mesh;
+}
+
+/// The mesh without the elements of one body. What its faces towards other bodies were listed as,
+/// group and CAD face, they are as boundary; those not listed get group and face 0. `new_id` gets
+/// the node that each node of `mesh` became, -1 where it is gone (compact_field).
+template <int D>
+SimplexMesh<D> drop_body(const SimplexMesh<D>& mesh, std::int32_t body,
+                         std::vector<NodeId>* new_id = nullptr);
 
 /// Inner faces whose vertices all lie on the boundary or on interfaces (C.1.1): through them one
 /// element reaches from wall to wall, and a flow with zero velocity at the walls is blocked there.

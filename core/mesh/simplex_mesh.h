@@ -24,7 +24,7 @@ enum class NodeKind : std::uint8_t {
 ///
 /// Orientation: elements are well oriented (A.28). A boundary facet is listed so that
 /// `facet_normal` points outward; equivalently, the element {facet, apex inside} would be ill
-/// oriented.
+/// oriented. Faces between two bodies may be listed too, so that they have a group and a CAD face.
 template <int D>
 struct SimplexMesh {
   static_assert(D >= 2 && D <= 4);

@@ -84,9 +84,11 @@ void check_arrays(const SimplexMesh<D>& mesh, MeshReport& r) {
       found(r, r.bad_points, "Node ", i, " has a coordinate that is not finite.");
 }
 
-/// Counts the uses of each face; returns the boundary, listed outward.
+/// Counts the uses of each face; returns the boundary, listed outward. `inner` gets the faces
+/// between two bodies, with growing nodes.
 template <int D>
-std::vector<typename SimplexMesh<D>::Facet> check_faces(const SimplexMesh<D>& mesh, MeshReport& r) {
+std::vector<typename SimplexMesh<D>::Facet> check_faces(
+    const SimplexMesh<D>& mesh, std::vector<typename SimplexMesh<D>::Facet>& inner, MeshReport& r) {
   const auto uses = face_uses<D>(mesh.elements, mesh.points.size());
   std::vector<typename SimplexMesh<D>::Facet> boundary;
   for_each_face<D>(uses, [&](std::size_t i, std::size_t j) {
@@ -98,6 +100,8 @@ std::vector<typename SimplexMesh<D>::Facet> check_faces(const SimplexMesh<D>& me
       found(r, r.faces_shared, "Face ", List{u.nodes}, " belongs to ", j - i, " elements.");
     } else {
       ++r.faces_interior;
+      if (mesh.element_body[u.element] != mesh.element_body[uses[i + 1].element])
+        inner.push_back(u.nodes);
       if (!FaceUse<D>::opposed(u, uses[i + 1]))
         found(r, r.misoriented, "Elements ", u.element, " and ", uses[i + 1].element,
               " lie on the same side of the face ", List{u.nodes}, ".");
@@ -106,10 +110,11 @@ std::vector<typename SimplexMesh<D>::Facet> check_faces(const SimplexMesh<D>& me
   return boundary;
 }
 
-/// The listed facets against the boundary of the elements.
+/// The listed facets against the boundary of the elements; `inner`: those that may be listed too.
 template <int D>
 void check_facets(const SimplexMesh<D>& mesh,
-                  const std::vector<typename SimplexMesh<D>::Facet>& boundary, MeshReport& r) {
+                  const std::vector<typename SimplexMesh<D>::Facet>& boundary,
+                  const std::vector<typename SimplexMesh<D>::Facet>& inner, MeshReport& r) {
   struct Entry {
     std::array<NodeId, D> nodes;
     bool odd;
@@ -131,7 +136,15 @@ void check_facets(const SimplexMesh<D>& mesh,
   std::sort(listed.begin(), listed.end());
   std::sort(real.begin(), real.end());
   auto it = listed.begin();
+  const std::array<NodeId, D>* last = nullptr;
   const auto extra = [&] {
+    // A face between two bodies may be listed, from either side.
+    const bool twice = last && *last == it->nodes;
+    last = &it->nodes;
+    if (!twice && std::binary_search(inner.begin(), inner.end(), it->nodes)) {
+      ++it;
+      return;
+    }
     found(r, r.facets_extra, "Facet ", it->index, " (nodes ", List{it->nodes},
           ") is no boundary face or is listed twice.");
     ++it;
@@ -192,11 +205,12 @@ Result<MeshReport> inspect(const SimplexMesh<D>& mesh, const Progress& progress)
   r.nodes = mesh.node_count();
   if (progress.cancelled()) return cancelled_error();
   progress.report(0.1);
-  const auto boundary = check_faces(mesh, r);
+  std::vector<typename SimplexMesh<D>::Facet> inner;
+  const auto boundary = check_faces(mesh, inner, r);
   if (progress.cancelled()) return cancelled_error();
   progress.report(0.7);
   check_measures(mesh, boundary, r);
-  check_facets(mesh, boundary, r);
+  check_facets(mesh, boundary, inner, r);
   if (r.first_finding.empty() && !r.volumes_agree()) {
     std::ostringstream text;
     text << "Elements cover each other: their volumes sum to " << r.volume

@@ -22,7 +22,8 @@ struct MeshReport {
   std::size_t faces_shared = 0;  ///< faces of more than two elements, condition (i)
   std::size_t misoriented = 0;  ///< faces that both elements see from the same side, condition (ii)
   std::size_t facets_missing = 0;  ///< boundary faces that are not listed as facets
-  std::size_t facets_extra = 0;    ///< facets that are no boundary face, or are listed twice
+  std::size_t facets_extra = 0;    ///< facets that are neither a boundary face nor one between two
+                                   ///< bodies, or are listed twice
   std::size_t facets_inward = 0;   ///< facets listed with the normal pointing inward
   std::size_t unused = 0;          ///< nodes without an element
 
@@ -37,7 +38,8 @@ struct MeshReport {
     return bad_arrays + bad_indices + bad_points + inverted + faces_shared + misoriented == 0 &&
            volumes_agree();
   }
-  /// Conforming, facets exactly the boundary listed outward, no unused node.
+  /// Conforming, facets the boundary listed outward and perhaps faces between bodies, no unused
+  /// node.
   bool valid() const {
     return conforming() && facets_missing + facets_extra + facets_inward + unused == 0;
   }

@@ -110,7 +110,7 @@ class Adaption {
       sort_in_space(work_);
       sorted_at_ = work_.node_count();
     }
-    return run(Partition<D>(work_, report_.sweeps, params_.threads), sweep, 1, progress);
+    return run(BlockPartition<D>(work_, report_.sweeps, params_.threads), sweep, 1, progress);
   }
 
   /// As many sweeps over the surroundings of poor elements, where they are a small part of the
@@ -125,12 +125,12 @@ class Adaption {
     for (std::size_t e = 0; e < patch.size(); ++e)
       patch[e] = patch[e] ? 0 : 1 + static_cast<std::int32_t>(e / piece);
     const auto blocks = static_cast<int>(2 + (patch.size() - 1) / piece);
-    return run(Partition<D>(work_, patch, blocks), sweep, sweeps, progress, 1);
+    return run(BlockPartition<D>(work_, patch, blocks), sweep, sweeps, progress, 1);
   }
 
   /// Each of the blocks, or of the first `active` ones, as many times, or until nothing is left to
   /// do. Returns the number of operations of the last sweeps.
-  std::size_t run(const Partition<D>& partition, const SweepParams& sweep, int sweeps,
+  std::size_t run(const BlockPartition<D>& partition, const SweepParams& sweep, int sweeps,
                   const Progress& progress, int active = std::numeric_limits<int>::max()) {
     std::vector<Block<D>> blocks(partition.count());
     std::vector<AdaptReport> counts(blocks.size());
@@ -325,10 +325,10 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
     hi = hi.cwiseMax(mesh.points[n]);
   }
   const double scale = (hi - lo).norm();
-  const SimplexMesh<D> whole = with_interfaces(mesh);
+  const auto [whole, outer, given] = list_interfaces(mesh);
   const BoundaryModel<D> model(whole, surface, params.chord_tolerance.value_or(1e-3 * scale),
                                params.feature_angle, params.frozen_groups, params.frozen_bodies,
-                               mesh.facets.size());
+                               outer, given);
   Adaption<D> adaption(whole, metric, model, params, metric_at, scale);
   AdaptReport& report = adaption.report();
   forecast(mesh, adaption.work(), report);

@@ -66,7 +66,9 @@ struct Adapted {
 
 /// Algorithm 3.1: the mesh whose elements are unit and equilateral under `metric`; the input is
 /// left untouched. Boundary facets keep their group and CAD face; nodes of the boundary stay on
-/// `surface` within the chord tolerance (without a surface: on the boundary of the input).
+/// `surface` within the chord tolerance (without a surface: on the boundary of the input). Faces
+/// between bodies that the input lists as facets are held in the same way, on the facets of
+/// `surface` that have their CAD faces; those that it does not list, to what they are in the input.
 /// A cancel returns the valid mesh reached so far, with `cancelled` set in its report.
 /// Errors: bad_input (metric size or mesh invalid), memory (the limit would be exceeded).
 template <int D>

@@ -122,8 +122,37 @@ ReferenceSurface<D> surface_of(const SimplexMesh<D>& mesh, double angle) {
   return s;
 }
 
-/// The outer surface with the facets of `own` from number `outer` on and the feature edges between
-/// them: their faces are numbered behind its faces, in `patch` too.
+/// The surface in two parts: the facets on faces of the first `outer` facets of the mesh, then
+/// those on faces of its other facets up to number `given`; what lies on both is there twice.
+/// Returns where the second part begins.
+template <int D>
+std::size_t sort_by_kind(ReferenceSurface<D>& surface, const SimplexMesh<D>& mesh,
+                         std::size_t outer, std::size_t given) {
+  if (outer == given) return surface.facets.size();
+  std::int32_t faces = 0;
+  for (std::int32_t f : surface.facet_face) faces = std::max(faces, f + 1);
+  for (std::int32_t f : mesh.facet_face) faces = std::max(faces, f + 1);
+  std::array<std::vector<char>, 2> on;
+  for (auto& kind : on) kind.assign(faces, 0);
+  for (std::size_t f = 0; f < given; ++f) on[f < outer ? 0 : 1][mesh.facet_face[f]] = 1;
+  const auto facets = std::move(surface.facets);
+  const auto face = std::move(surface.facet_face);
+  surface.facets.clear();
+  surface.facet_face.clear();
+  std::size_t first = 0;
+  for (const auto& kind : on) {
+    first = surface.facets.size();
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      if (!kind[face[f]]) continue;
+      surface.facets.push_back(facets[f]);
+      surface.facet_face.push_back(face[f]);
+    }
+  }
+  return first;
+}
+
+/// The surface with the facets of `own` from number `outer` on and the feature edges between them:
+/// their faces are numbered behind its faces, in `patch` too.
 template <int D>
 ReferenceSurface<D> joined(ReferenceSurface<D> surface, const ReferenceSurface<D>& own,
                            std::size_t outer, std::vector<std::int32_t>& patch) {
@@ -277,25 +306,35 @@ template <int D>
 BoundaryModel<D>::BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurface<D>* surface,
                                 double tolerance, double feature_angle,
                                 const std::vector<std::int32_t>& frozen_groups,
-                                const std::vector<std::int32_t>& frozen_bodies, std::size_t outer)
+                                const std::vector<std::int32_t>& frozen_bodies, std::size_t outer,
+                                std::size_t given)
     : tolerance_(tolerance) {
-  outer = std::min(outer, mesh.facets.size());
+  given = std::min(given, mesh.facets.size());
+  outer = std::min(outer, given);
   ReferenceSurface<D> reference;
   std::vector<std::int32_t> patch = mesh.facet_face;  // [facet of the mesh]
   if constexpr (D < 4) {
-    if (!surface || outer < mesh.facets.size()) {
+    if (surface) {
+      // Without a face of theirs the surface says nothing of the interfaces.
+      const auto& known = surface->facet_face;
+      if (std::none_of(mesh.facet_face.begin() + outer, mesh.facet_face.begin() + given,
+                       [&](auto f) { return std::count(known.begin(), known.end(), f) > 0; }))
+        given = outer;
+      reference = *surface;
+      first_interface_ = static_cast<std::int32_t>(sort_by_kind(reference, mesh, outer, given));
+    }
+    if (!surface || given < mesh.facets.size()) {
       ReferenceSurface<D> own = surface_of(mesh, feature_angle);
       patch = own.facet_face;
       if (surface) {
-        std::copy_n(mesh.facet_face.begin(), outer, patch.begin());
-        own = joined(*surface, own, outer, patch);
+        std::copy_n(mesh.facet_face.begin(), given, patch.begin());
+        own = joined(std::move(reference), own, given, patch);
+      } else {
+        first_interface_ =
+            static_cast<std::int32_t>(own.facets.size() - (mesh.facets.size() - outer));
       }
       reference = std::move(own);
-    } else {
-      reference = *surface;
     }
-    first_interface_ =
-        static_cast<std::int32_t>(reference.facets.size() - (mesh.facets.size() - outer));
   }
   std::map<std::array<std::int32_t, 3>, std::int32_t> index;
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
@@ -331,7 +370,10 @@ BoundaryModel<D>::BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurfa
       reference.facet_face.resize(reference.facets.size());
     }
     locator_ = std::make_unique<Search>(reference);
-    if (surface) measure_first(mesh);
+    if (surface) {
+      find_sides(mesh);
+      measure_first(mesh);
+    }
   }
 }
 
@@ -438,6 +480,22 @@ void BoundaryModel<D>::find_features(const SimplexMesh<D>& mesh,
     if (!borders.empty()) features_ = std::make_unique<Features>(std::move(segments));
     on_features_ = std::make_unique<Vertices>(std::move(vertices));
   }
+}
+
+/// An interface may be listed from the other side than the body whose surface it is, and what
+/// becomes of it when one body is dropped too.
+template <int D>
+void BoundaryModel<D>::find_sides(const SimplexMesh<D>& mesh) {
+  std::vector<double> along(mesh.facets.size(), 0);
+  parallel_each(along.size(), 0, {}, [&](std::size_t f) {
+    const auto p = mesh.corners(mesh.facets[f]);
+    const Vec<D> center = std::accumulate(p.begin() + 1, p.end(), p[0]) / D;
+    const auto at = nearest(center, 1e150, facet_tag_[f]);
+    if (at) along[f] = facet_normal<D>(p).dot(normals_[at->facet]);
+  });
+  std::vector<double> sum(tags_.size(), 0);
+  for (std::size_t f = 0; f < along.size(); ++f) sum[facet_tag_[f]] += along[f];
+  for (std::size_t t = 0; t < tags_.size(); ++t) tags_[t].side = sum[t] < 0 ? -1 : 1;
 }
 
 template <int D>

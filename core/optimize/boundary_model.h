@@ -22,12 +22,13 @@ class BoundaryModel {
   /// `surface` null: the boundary of `mesh` itself is the reference, with features where facets
   /// meet at more than `feature_angle` radians. `tolerance` is the chord tolerance in mm.
   /// Facets of the frozen groups (ids) and elements of the frozen bodies keep their nodes. The
-  /// facets of `mesh` from number `outer` on are interfaces between bodies: their reference is
-  /// always the mesh given.
+  /// facets of `mesh` from number `outer` on are interfaces between bodies; the reference of those
+  /// from number `given` on is always the mesh given.
   BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurface<D>* surface, double tolerance,
                 double feature_angle, const std::vector<std::int32_t>& frozen_groups = {},
                 const std::vector<std::int32_t>& frozen_bodies = {},
-                std::size_t outer = std::numeric_limits<std::size_t>::max());
+                std::size_t outer = std::numeric_limits<std::size_t>::max(),
+                std::size_t given = std::numeric_limits<std::size_t>::max());
   ~BoundaryModel();
 
   struct Tag {
@@ -35,6 +36,7 @@ class BoundaryModel {
     std::int32_t face = 0;   ///< CAD face
     std::int32_t patch = 0;  ///< the CAD face, or without one the part of it between features
     bool interface = false;  ///< between two bodies
+    double side = 1;         ///< -1: facets are listed against the surface's normals
   };
 
   const Tag& tag(std::int32_t t) const { return tags_[t]; }
@@ -84,6 +86,7 @@ class BoundaryModel {
   void find_planes(const ReferenceSurface<D>& reference);
   void find_features(const SimplexMesh<D>& mesh, const ReferenceSurface<D>& reference,
                      double feature_angle);
+  void find_sides(const SimplexMesh<D>& mesh);
   void measure_first(const SimplexMesh<D>& mesh);
 
   struct Features;

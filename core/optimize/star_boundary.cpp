@@ -344,7 +344,8 @@ bool StarOptimizer<D>::boundary_within(const Apex& apex, const BoundarySite& sit
     const Vec<D> normal = facet_normal<D>(q).normalized();
     const auto at = model_.nearest(center, limit, retag_[i]);
     if (!at) return false;
-    if (!flat && model_.normal(at->facet).dot(normal) < surface_turn) return false;
+    const double side = model_.tag(retag_[i]).side;
+    if (!flat && side * model_.normal(at->facet).dot(normal) < surface_turn) return false;
     if (!one_tag) {
       const std::int32_t t = model_.tag_on(retag_[i], at->facet);
       if (!model_.hard(t, retag_[i])) retag_[i] = t;

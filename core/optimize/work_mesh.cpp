@@ -96,7 +96,7 @@ std::vector<NodeId>& node_map(std::size_t size) {
 }  // namespace
 
 template <int D>
-Partition<D>::Partition(const WorkMesh<D>& mesh, int round, int threads) {
+BlockPartition<D>::BlockPartition(const WorkMesh<D>& mesh, int round, int threads) {
   int depth = 0;
   while ((mesh.elements.size() >> depth) > block_elements) ++depth;
   const std::size_t count = std::size_t{1} << depth;
@@ -120,13 +120,15 @@ Partition<D>::Partition(const WorkMesh<D>& mesh, int round, int threads) {
 }
 
 template <int D>
-Partition<D>::Partition(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count) {
+BlockPartition<D>::BlockPartition(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home,
+                                  int count) {
   node_block_.resize(mesh.points.size());
   fill(mesh, home, count);
 }
 
 template <int D>
-void Partition<D>::fill(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count) {
+void BlockPartition<D>::fill(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home,
+                             int count) {
   first_.assign(count + 1, 0);
   for (std::int32_t b : home) ++first_[b + 1];
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -147,7 +149,7 @@ void Partition<D>::fill(const WorkMesh<D>& mesh, const std::vector<std::int32_t>
 }
 
 template <int D>
-Block<D> Partition<D>::extract(const WorkMesh<D>& mesh, int block) const {
+Block<D> BlockPartition<D>::extract(const WorkMesh<D>& mesh, int block) const {
   Block<D> b;
   auto& local = node_map(mesh.points.size());
   std::vector<NodeId> nodes;
@@ -293,9 +295,9 @@ void sort_in_space(WorkMesh<D>& mesh) {
 template struct WorkMesh<2>;
 template struct WorkMesh<3>;
 template struct WorkMesh<4>;
-template class Partition<2>;
-template class Partition<3>;
-template class Partition<4>;
+template class BlockPartition<2>;
+template class BlockPartition<3>;
+template class BlockPartition<4>;
 template WorkMesh<2> merge(const WorkMesh<2>&, std::vector<Block<2>>&, int);
 template WorkMesh<3> merge(const WorkMesh<3>&, std::vector<Block<3>>&, int);
 template WorkMesh<4> merge(const WorkMesh<4>&, std::vector<Block<4>>&, int);

@@ -36,11 +36,11 @@ struct Block {
 /// most elements lie. A function of the mesh and the round alone, so that threads do not matter;
 /// `round` shifts the cuts.
 template <int D>
-class Partition {
+class BlockPartition {
  public:
-  Partition(const WorkMesh<D>& mesh, int round, int threads);
+  BlockPartition(const WorkMesh<D>& mesh, int round, int threads);
   /// By hand: [element] its block, of `count` blocks.
-  Partition(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count);
+  BlockPartition(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count);
   int count() const { return static_cast<int>(first_.size()) - 1; }
   /// Whether the block has dirty nodes.
   bool pending(int block) const { return pending_[block] != 0; }

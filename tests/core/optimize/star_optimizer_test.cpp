@@ -100,7 +100,7 @@ class Bench {
 
   /// One sweep over the nodes with something new around. Returns the number of operations.
   std::size_t sweep(const SweepParams& params) {
-    const Partition<D> partition(work_, 0, 1);
+    const BlockPartition<D> partition(work_, 0, 1);
     EXPECT_EQ(partition.count(), 1);
     std::vector<Block<D>> blocks{partition.extract(work_, 0)};
     StarOptimizer<D> star(std::move(blocks[0]), model_, adapt_, at_nodes_, std::sqrt(D));

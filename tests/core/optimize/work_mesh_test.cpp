@@ -98,7 +98,8 @@ class WorkMeshes : public testing::Test {
     }
     return work;
   }
-  std::vector<Block<dim>> blocks(const WorkMesh<dim>& work, const Partition<dim>& partition) const {
+  std::vector<Block<dim>> blocks(const WorkMesh<dim>& work,
+                                 const BlockPartition<dim>& partition) const {
     std::vector<Block<dim>> all;
     for (int i = 0; i < partition.count(); ++i) all.push_back(partition.extract(work, i));
     return all;
@@ -118,7 +119,7 @@ TYPED_TEST(WorkMeshes, MergingUntouchedBlocksGivesTheMeshBack) {
   constexpr int D = TypeParam::value;
   const auto work = this->mesh();
   for (int round = 0; round < 5; ++round) {
-    const Partition<D> partition(work, round, 1);
+    const BlockPartition<D> partition(work, round, 1);
     ASSERT_GT(partition.count(), 1);
     auto blocks = this->blocks(work, partition);
     expect_same_up_to_numbering(work, merge(work, blocks, 1));
@@ -128,7 +129,7 @@ TYPED_TEST(WorkMeshes, MergingUntouchedBlocksGivesTheMeshBack) {
 TYPED_TEST(WorkMeshes, EveryElementIsInOneBlockAndLockedNodesAreThoseOfSeveral) {
   constexpr int D = TypeParam::value;
   const auto work = this->mesh();
-  const Partition<D> partition(work, 1, 1);
+  const BlockPartition<D> partition(work, 1, 1);
   const auto blocks = this->blocks(work, partition);
   WorkMesh<D> together;
   together.points = work.points;
@@ -167,7 +168,7 @@ TYPED_TEST(WorkMeshes, ABlockIsPendingWhenANodeOfItsOwnIsDirty) {
   constexpr int D = TypeParam::value;
   auto work = this->mesh();
   std::fill(work.dirty.begin(), work.dirty.end(), 0);
-  const Partition<D> clean(work, 0, 1);
+  const BlockPartition<D> clean(work, 0, 1);
   for (int i = 0; i < clean.count(); ++i) EXPECT_FALSE(clean.pending(i));
   const auto blocks = this->blocks(work, clean);
   const auto& some = blocks.back();
@@ -175,25 +176,25 @@ TYPED_TEST(WorkMeshes, ABlockIsPendingWhenANodeOfItsOwnIsDirty) {
   while (some.shared[own] != 0) ++own;
   const auto at = std::find(work.points.begin() + 1, work.points.end(), some.mesh.points[own]);
   work.dirty[at - work.points.begin()] = 1;
-  const Partition<D> touched(work, 0, 1);
+  const BlockPartition<D> touched(work, 0, 1);
   for (int i = 0; i < touched.count(); ++i) EXPECT_EQ(touched.pending(i), i + 1 == touched.count());
 }
 
 TYPED_TEST(WorkMeshes, RoundsShiftTheCuts) {
   constexpr int D = TypeParam::value;
   const auto work = this->mesh();
-  const Partition<D> a(work, 0, 1), b(work, 1, 1);
+  const BlockPartition<D> a(work, 0, 1), b(work, 1, 1);
   EXPECT_NE(a.extract(work, 0).mesh.points.size(), b.extract(work, 0).mesh.points.size());
 }
 
 TYPED_TEST(WorkMeshes, ThreadsDoNotMatter) {
   constexpr int D = TypeParam::value;
   const auto work = this->mesh();
-  const Partition<D> partition(work, 2, 1);
+  const BlockPartition<D> partition(work, 2, 1);
   auto one = this->blocks(work, partition);
   const auto first = merge(work, one, 1);
   for (int threads : {2, 7}) {
-    const Partition<D> other(work, 2, threads);
+    const BlockPartition<D> other(work, 2, threads);
     ASSERT_EQ(other.count(), partition.count());
     auto many = this->blocks(work, other);
     expect_identical(first, merge(work, many, threads));

@@ -1,0 +1,320 @@
+#include "core/multidomain/exact_interface.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "core/base/parallel.h"
+#include "core/geometry/locator.h"
+#include "core/geometry/soup.h"
+#include "core/mesh/adjacency.h"
+#include "core/multidomain/chord_metric.h"
+#include "core/multidomain/hold.h"
+#include "core/multidomain/interface_cut.h"
+
+namespace lamella {
+namespace {
+
+/// Of the chord tolerance: what the straight pieces of a curve may take.
+constexpr double curve_share = 0.1;
+/// A facet must not look away from the CAD face it is put on.
+constexpr double face_turn = 0.4;
+/// Growth of the metric's determinant that calls for a finer mesh before it is cut.
+constexpr double finer_share = 1.5;
+
+std::int32_t face_count(const std::vector<std::int32_t>& facet_face) {
+  std::int32_t faces = 0;
+  for (std::int32_t f : facet_face) faces = std::max(faces, f + 1);
+  return faces;
+}
+
+/// Adds a surface behind the others, its faces numbered from `face` on.
+void append(ReferenceSurface<3>& all, const ReferenceSurface<3>& s, std::int32_t face) {
+  const auto shift = static_cast<std::int32_t>(all.points.size());
+  all.points.insert(all.points.end(), s.points.begin(), s.points.end());
+  for (auto f : s.facets) {
+    for (auto& v : f) v += shift;
+    all.facets.push_back(f);
+  }
+  for (auto f : s.facet_face) all.facet_face.push_back(f + face);
+  for (const auto& e : s.feature_edges) all.feature_edges.push_back({e[0] + shift, e[1] + shift});
+  for (auto c : s.corners) all.corners.push_back(c + shift);
+  all.faces.resize(static_cast<std::size_t>(face_count(all.facet_face)));
+  for (std::size_t f = 0; f < s.faces.size() && face + f < all.faces.size(); ++f)
+    all.faces[face + f] = s.faces[f];
+}
+
+/// Facets of a mesh that `on` tells, as a surface.
+template <class On>
+ReferenceSurface<3> surface_of(const SimplexMesh<3>& mesh, std::size_t first, std::size_t last,
+                               const On& on) {
+  ReferenceSurface<3> s;
+  std::vector<std::int32_t> where(mesh.points.size(), -1);
+  for (std::size_t f = first; f < last; ++f) {
+    if (!on(f)) continue;
+    std::array<std::int32_t, 3> facet;
+    for (int k = 0; k < 3; ++k) {
+      std::int32_t& v = where[mesh.facets[f][k]];
+      if (v < 0) {
+        v = static_cast<std::int32_t>(s.points.size());
+        s.points.push_back(mesh.points[mesh.facets[f][k]]);
+      }
+      facet[k] = v;
+    }
+    s.facets.push_back(facet);
+    s.facet_face.push_back(mesh.facet_face[f]);
+  }
+  s.faces.resize(static_cast<std::size_t>(face_count(s.facet_face)));
+  return s;
+}
+
+using Edge = std::array<std::int32_t, 2>;
+
+/// The facets around each edge.
+std::map<Edge, std::vector<std::size_t>> edges_of(
+    const std::vector<std::array<NodeId, 3>>& facets) {
+  std::map<Edge, std::vector<std::size_t>> edges;
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(facets[f][k], facets[f][(k + 1) % 3]);
+      edges[{a, b}].push_back(f);
+    }
+  return edges;
+}
+
+/// The boundary of the mesh with its edges: between faces, groups, and where facets meet at an
+/// angle.
+ReferenceSurface<3> wall_of(const SimplexMesh<3>& mesh, double feature_angle) {
+  ReferenceSurface<3> s = surface_of(mesh, 0, mesh.facets.size(), [](std::size_t) { return true; });
+  const auto normal = [&](std::size_t f) {
+    return facet_normal<3>(mesh.corners(mesh.facets[f])).normalized().eval();
+  };
+  for (const auto& [e, around] : edges_of(s.facets)) {
+    const std::size_t a = around.front(), b = around.back();
+    if (around.size() != 2 || mesh.facet_face[a] != mesh.facet_face[b] ||
+        mesh.facet_group[a] != mesh.facet_group[b] ||
+        normal(a).dot(normal(b)) < std::cos(feature_angle))
+      s.feature_edges.push_back(e);
+  }
+  s.corners = kinks_of_features(s);
+  return s;
+}
+
+class Finish {
+ public:
+  Finish(const SimplexMesh<3>& original, const Partition<3>& partition,
+         const std::vector<ReferenceSurface<3>>& surfaces, CutMesh& cut, double tolerance,
+         double feature_angle)
+      : original_(original),
+        partition_(partition),
+        surfaces_(surfaces),
+        cut_(cut),
+        tolerance_(tolerance),
+        feature_angle_(feature_angle) {}
+
+  ReferenceSurface<3> run() {
+    find_sides();
+    ReferenceSurface<3> all = wall_of(original_, feature_angle_);
+    std::int32_t base = face_count(original_.facet_face);
+    for (int z = 0; z < partition_.background(); ++z) {
+      const ReferenceSurface<3>* s = &surfaces_[z];
+      ReferenceSurface<3> own;
+      if (s->facets.empty()) {
+        own = surface_of(cut_.mesh, cut_.outer, cut_.mesh.facets.size(),
+                         [&](std::size_t f) { return sides_[f - cut_.outer][0] == z; });
+        s = &own;
+      }
+      if (s->facets.empty()) continue;
+      put_on_faces(z, *s, base);
+      append(all, *s, base);
+      base += face_count(s->facet_face);
+    }
+    add_curves(all);
+    return all;
+  }
+
+ private:
+  /// Regions on both sides of the interfaces; each pair is a group.
+  void find_sides() {
+    SimplexMesh<3>& mesh = cut_.mesh;
+    std::map<std::array<NodeId, 3>, std::size_t> index;
+    for (std::size_t f = cut_.outer; f < mesh.facets.size(); ++f) {
+      auto nodes = mesh.facets[f];
+      std::sort(nodes.begin(), nodes.end());
+      index[nodes] = f - cut_.outer;
+    }
+    sides_.resize(index.size());
+    const auto uses = face_uses<3>(mesh.elements, mesh.points.size());
+    for_each_face<3>(uses, [&](std::size_t first, std::size_t last) {
+      if (last - first != 2) return;
+      const auto it = index.find(uses[first].nodes);
+      if (it == index.end()) return;
+      const auto [low, high] = std::minmax(mesh.element_body[uses[first].element],
+                                           mesh.element_body[uses[first + 1].element]);
+      sides_[it->second] = {low, high};
+    });
+    std::map<Edge, std::int32_t> groups;
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      const auto [it, added] =
+          groups.try_emplace(sides_[i], static_cast<std::int32_t>(mesh.groups.size()));
+      if (added) mesh.groups.push_back(mesh.bodies[sides_[i][0]] + "|" + mesh.bodies[sides_[i][1]]);
+      mesh.facet_group[cut_.outer + i] = it->second;
+    }
+  }
+
+  /// The CAD faces of the interfaces that a zone has cut.
+  void put_on_faces(int zone, const ReferenceSurface<3>& s, std::int32_t base) {
+    SimplexMesh<3>& mesh = cut_.mesh;
+    const Locator<3> locator(s);
+    parallel_each(sides_.size(), 0, {}, [&](std::size_t i) {
+      if (sides_[i][0] != zone) return;
+      const std::size_t f = cut_.outer + i;
+      const auto p = mesh.corners(mesh.facets[f]);
+      const Vec<3> center = (p[0] + p[1] + p[2]) / 3;
+      const Vec<3> normal = facet_normal<3>(p).normalized();
+      const auto at = locator.nearest(center);
+      std::int32_t on = at->facet;
+      if (locator.normal(on).dot(normal) < face_turn) {
+        std::vector<Nearest<3>> near;
+        locator.all_within(center, 2 * std::sqrt(at->distance2) + tolerance_, near);
+        for (const Nearest<3>& n : near)
+          if (locator.normal(n.facet).dot(normal) >= face_turn) {
+            on = n.facet;
+            break;
+          }
+      }
+      mesh.facet_face[f] = base + s.facet_face[on];
+    });
+  }
+
+  /// The edges where interfaces meet each other or the boundary, as lines on all of them.
+  void add_curves(ReferenceSurface<3>& all) const {
+    const SimplexMesh<3>& mesh = cut_.mesh;
+    std::vector<Edge> known(cut_.features.begin(), cut_.features.end());
+    std::sort(known.begin(), known.end());
+    std::vector<std::int32_t> where(mesh.points.size(), -1);
+    const auto vertex = [&](NodeId n) {
+      if (where[n] < 0) {
+        where[n] = static_cast<std::int32_t>(all.points.size());
+        all.points.push_back(mesh.points[n]);
+      }
+      return where[n];
+    };
+    for (const auto& [e, around] : edges_of(mesh.facets)) {
+      const bool differ = std::any_of(around.begin(), around.end(), [&](std::size_t f) {
+        return mesh.facet_group[f] != mesh.facet_group[around[0]];
+      });
+      const bool inner =
+          std::any_of(around.begin(), around.end(), [&](std::size_t f) { return f >= cut_.outer; });
+      if (!differ || !inner || std::binary_search(known.begin(), known.end(), e)) continue;
+      Hold hold;
+      hold.origin = mesh.points[e[0]];
+      for (std::size_t f : around) {
+        if (f < cut_.outer) {
+          hold.add_plane(facet_normal<3>(mesh.corners(mesh.facets[f])));
+        } else {
+          hold.add_zone(sides_[f - cut_.outer][0]);
+        }
+      }
+      draw(hold, vertex(e[0]), vertex(e[1]), 6, all);
+    }
+  }
+
+  /// The curve between two of its points.
+  void draw(const Hold& hold, std::int32_t a, std::int32_t b, int depth,
+            ReferenceSurface<3>& all) const {
+    const Vec<3> middle = 0.5 * (all.points[a] + all.points[b]);
+    const double length = (all.points[b] - all.points[a]).norm();
+    const auto on =
+        depth > 0 ? hold.settle(partition_, middle, 0.01 * tolerance_) : std::optional<Vec<3>>{};
+    const double off = on ? (*on - middle).norm() : 0;
+    if (off <= curve_share * tolerance_ || off > 0.4 * length) {
+      all.feature_edges.push_back({a, b});
+      return;
+    }
+    const auto m = static_cast<std::int32_t>(all.points.size());
+    all.points.push_back(*on);
+    draw(hold, a, m, depth - 1, all);
+    draw(hold, m, b, depth - 1, all);
+  }
+
+  const SimplexMesh<3>& original_;
+  const Partition<3>& partition_;
+  const std::vector<ReferenceSurface<3>>& surfaces_;
+  CutMesh& cut_;
+  double tolerance_, feature_angle_;
+  std::vector<Edge> sides_;  ///< [facet behind the outer ones] regions, the lower first
+};
+
+}  // namespace
+
+Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>& metric,
+                               const Partition<3>& partition,
+                               const std::vector<ReferenceSurface<3>>& surfaces,
+                               const ExactParams& params, const Progress& progress,
+                               const MetricFunction<3>& metric_at) {
+  if (mesh.elements.empty() || mesh.facets.empty())
+    return Error{Code::bad_input, "The mesh to cut has no elements or no boundary facets.",
+                 "Adapt a mesh of the whole domain to the interfaces first."};
+  if (surfaces.size() != static_cast<std::size_t>(partition.background()))
+    return Error{Code::bad_input,
+                 "There are " + std::to_string(surfaces.size()) + " surfaces for " +
+                     std::to_string(partition.background()) + " regions.",
+                 "Give one surface for each region, without facets where there is none."};
+  if (!metric_at)
+    if (Result<void> good = check_metric<3>(metric, mesh.node_count()); !good) return good.error();
+  AdaptParams adapt_params = params.adapt;
+  if (!adapt_params.chord_tolerance) {
+    Box<3> box;
+    for (std::size_t n = 1; n < mesh.points.size(); ++n) box.add(mesh.points[n]);
+    adapt_params.chord_tolerance = 1e-3 * (box.hi - box.lo).norm();
+  }
+  CutParams cut_params;
+  cut_params.tolerance = *adapt_params.chord_tolerance;
+  cut_params.snap = params.snap;
+  cut_params.threads = adapt_params.threads;
+  const double tolerance = cut_params.tolerance;
+  MetricFunction<3> chords_at;
+  if (metric_at)
+    chords_at = [&](const Vec<3>& x) { return with_chords(metric_at(x), partition, x, tolerance); };
+  MetricField<3> chords(mesh.points.size(), Metric<3>::Identity());
+  std::vector<char> finer(mesh.points.size(), 0);
+  if (!parallel_each(mesh.node_count(), adapt_params.threads, progress.portion(0, 0.05),
+                     [&](std::size_t i) {
+                       const Vec<3>& x = mesh.points[i + 1];
+                       const Metric<3> m = metric_at ? metric_at(x) : metric[i + 1];
+                       chords[i + 1] = with_chords(m, partition, x, tolerance);
+                       finer[i + 1] = chords[i + 1].determinant() > finer_share * m.determinant();
+                     }))
+    return cancelled_error();
+  // Chords that are too long are made short before there is an interface to be held.
+  std::optional<Adapted<3>> refined;
+  if (std::count(finer.begin(), finer.end(), 1) > 0) {
+    Result<Adapted<3>> r =
+        adapt<3>(mesh, chords, nullptr, adapt_params, progress.portion(0.05, 0.4), chords_at);
+    if (!r) return r.error();
+    if (r->report.cancelled) return cancelled_error();
+    refined = std::move(*r);
+  }
+  const SimplexMesh<3>& fuzzy = refined ? refined->mesh : mesh;
+  const MetricField<3>& fuzzy_metric = refined ? refined->metric : chords;
+  Result<CutMesh> cut = cut_interfaces(fuzzy, fuzzy_metric, partition, surfaces, cut_params,
+                                       progress.portion(0.4, 0.5), chords_at);
+  if (!cut) return cut.error();
+  Exact out;
+  out.snapped = cut->snapped;
+  out.added = cut->added;
+  out.lost = cut->lost;
+  out.surface =
+      Finish(fuzzy, partition, surfaces, *cut, cut_params.tolerance, adapt_params.feature_angle)
+          .run();
+  Result<Adapted<3>> adapted = adapt<3>(cut->mesh, cut->metric, &out.surface, adapt_params,
+                                        progress.portion(0.5, 1), chords_at);
+  if (!adapted) return adapted.error();
+  out.mesh = std::move(adapted->mesh);
+  out.metric = std::move(adapted->metric);
+  out.adapt = adapted->report;
+  return out;
+}
+
+}  // namespace lamella

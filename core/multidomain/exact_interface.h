@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/multidomain/partition.h"
+#include "core/optimize/adapt.h"
+
+namespace lamella {
+
+struct ExactParams {
+  AdaptParams
+      adapt;  ///< of the mesh that was cut; its chord tolerance holds for the interfaces too
+  double snap = 0.4;  ///< of the size across: nodes nearer to a border are moved onto it
+};
+
+/// A mesh every element of which belongs to one region.
+struct Exact {
+  /// The regions as bodies. Facets: the boundary and the interfaces, these in a group
+  /// "region|region" for each pair and with the CAD face of `surface` that they lie on.
+  SimplexMesh<3> mesh;
+  MetricField<3> metric;  ///< [node]
+  /// The boundary of the domain, then the surfaces of the regions, their faces numbered on, with
+  /// the lines where interfaces meet each other and the boundary: what holds the mesh when it is
+  /// adapted again, the background dropped or not.
+  ReferenceSurface<3> surface;
+  std::size_t snapped = 0;  ///< nodes moved onto borders
+  std::size_t added = 0;    ///< nodes added on borders
+  std::size_t lost = 0;     ///< pieces of feature edges that could not be followed
+  AdaptReport adapt;
+};
+
+/// From a mesh of the domain that is fine around the borders between regions to a conforming mesh
+/// of the regions: cut along the borders (interface_cut.h), then adapted to the metric with the
+/// interfaces held on `surfaces` within the chord tolerance. `surfaces`: the boundary of each
+/// region's zone, without the background; what a region without facets cuts out is its surface
+/// itself. Boundary nodes move in the boundary only. A cancel during the adaption returns the valid
+/// mesh reached so far, with `adapt.cancelled` set.
+/// Errors: bad_input (sizes of arrays, no elements), cancelled, memory.
+Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>& metric,
+                               const Partition<3>& partition,
+                               const std::vector<ReferenceSurface<3>>& surfaces,
+                               const ExactParams& params = {}, const Progress& progress = {},
+                               const MetricFunction<3>& metric_at = {});
+
+}  // namespace lamella

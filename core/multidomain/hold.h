@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+
+#include "core/multidomain/partition.h"
+
+namespace lamella {
+
+/// What a point of a mesh must stay on: planes through where it is, and borders of zones.
+struct Hold {
+  Vec<3> origin = Vec<3>::Zero();
+  std::vector<Vec<3>> planes;  ///< unit normals
+  std::vector<int> zones;
+
+  bool free() const { return planes.empty() && zones.empty(); }
+  void add_plane(const Vec<3>& normal);
+  void add_zone(int zone);
+  /// Whether x lies on all of them within `tolerance` mm.
+  bool allows(const Partition<3>& partition, const Vec<3>& x, double tolerance) const;
+  /// The point that all have in common near x, by Newton's method; nothing when it is not found.
+  std::optional<Vec<3>> settle(const Partition<3>& partition, Vec<3> x, double tolerance) const;
+};
+
+}  // namespace lamella

@@ -1,0 +1,717 @@
+#include "core/multidomain/interface_cut.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "core/base/parallel.h"
+#include "core/geometry/foot.h"
+#include "core/mesh/element_locator.h"
+#include "core/mesh/quality.h"
+#include "core/multidomain/feature_chains.h"
+#include "core/multidomain/hold.h"
+#include "core/optimize/metric_carrier.h"
+#include "core/optimize/topology.h"
+
+namespace lamella {
+namespace {
+
+/// No move may bring an element below this quality, or below half of what was there before.
+constexpr double poor_quality = 0.05;
+/// Metric distance from an edge or a face within which a new point takes its place.
+constexpr double close = 0.12;
+/// Of the tolerance: nodes this near to a border lie on it.
+constexpr double on_share = 0.02;
+/// Of the tolerance: how far an edge may dip through a border, and through a smooth one, where the
+/// chord of a curved border does.
+constexpr double dip_share = 0.03;
+constexpr double smooth_dip_share = 0.3;
+/// Cosine between normals of a border above which it is smooth.
+constexpr double smooth_turn = 0.8;
+/// Of the tolerance: what the straight pieces of a feature line may take.
+constexpr double chain_share = 0.2;
+/// Rounds of looking for edges that cross a border.
+constexpr int split_rounds = 12;
+/// Of the tolerance: how far the middle of an interface's edge may lie from the border; facets add
+/// to it.
+constexpr double bend_share = 0.6;
+/// Rounds of halving edges that are too far.
+constexpr int bend_rounds = 4;
+
+using Element = std::array<NodeId, 4>;
+using Weights = std::array<double, 4>;
+
+class Cutter {
+ public:
+  Cutter(const SimplexMesh<3>& mesh, const MetricField<3>& metric, const Partition<3>& partition,
+         const CutParams& params, const MetricFunction<3>& metric_at)
+      : partition_(partition),
+        params_(params),
+        metric_at_(metric_at),
+        initial_(mesh.elements),
+        locator_(mesh),
+        on_(on_share * params.tolerance) {
+    auto elements = mesh.elements;
+    std::vector<std::int32_t> label(elements.size(), partition.background());
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+      elements.push_back(Topology<3>::virtual_element(mesh.facets[f]));
+      label.push_back(static_cast<std::int32_t>(f));
+    }
+    first_interface_ = static_cast<std::int32_t>(mesh.facets.size());
+    topo_ = Topology<3>::from(mesh.points, std::move(elements), std::move(label));
+    metric_.resize(mesh.points.size());
+    for (std::size_t n = 1; n < metric_.size(); ++n)
+      metric_[n] = Packed<3>::from(metric_at ? metric_at(mesh.points[n]) : metric[n]);
+    phi_.assign(mesh.points.size(), 0);
+    locked_.assign(mesh.points.size(), 0);
+    old_nodes_ = mesh.node_count();
+    Box<3> box;
+    for (std::size_t n = 1; n < mesh.points.size(); ++n) box.add(mesh.points[n]);
+    exact_ = 1e-10 * (box.hi - box.lo).norm();
+  }
+
+  bool cut(int zone, const ReferenceSurface<3>& surface, const Progress& progress) {
+    zone_ = zone;
+    if (!follow_features(surface, progress.portion(0, 0.4))) return false;
+    if (!measure(progress.portion(0.4, 0.5))) return false;
+    if (!snap(progress.portion(0.5, 0.7))) return false;
+    if (!split(progress.portion(0.7, 0.9))) return false;
+    tag();
+    return bend(progress.portion(0.9, 1));
+  }
+
+  CutMesh result(const SimplexMesh<3>& original) const {
+    CutMesh out;
+    SimplexMesh<3>& mesh = out.mesh;
+    mesh.points = topo_.points;
+    mesh.bodies = partition_.names();
+    mesh.groups = original.groups;
+    out.metric.push_back(Metric<3>::Identity());
+    for (std::size_t n = 1; n < metric_.size(); ++n) out.metric.push_back(metric_[n].full());
+    for (const bool wall : {true, false}) {
+      for (std::int32_t e = 0; e < count(); ++e) {
+        if (!topo_.alive(e)) continue;
+        if (!topo_.is_virtual(e)) {
+          if (!wall) continue;
+          mesh.elements.push_back(topo_.elements[e]);
+          mesh.element_body.push_back(topo_.label[e]);
+        } else if (is_wall(e) == wall) {
+          const auto f = static_cast<std::size_t>(topo_.label[e]);
+          mesh.facets.push_back(Topology<3>::facet_of(topo_.elements[e]));
+          mesh.facet_group.push_back(wall ? original.facet_group[f] : 0);
+          mesh.facet_face.push_back(wall ? original.facet_face[f] : 0);
+        }
+      }
+      if (wall) out.outer = mesh.facets.size();
+    }
+    out.features.assign(features_.begin(), features_.end());
+    out.snapped = snapped_;
+    out.added = mesh.node_count() - old_nodes_;
+    out.lost = lost_;
+    return out;
+  }
+
+ private:
+  std::int32_t count() const { return static_cast<std::int32_t>(topo_.elements.size()); }
+  bool is_wall(std::int32_t e) const { return topo_.label[e] < first_interface_; }
+  bool active(std::int32_t e) const {
+    return topo_.alive(e) && !topo_.is_virtual(e) && topo_.label[e] == partition_.background();
+  }
+  const Vec<3>& at(NodeId n) const { return topo_.points[n]; }
+  double phi_at(const Vec<3>& x) const { return partition_.zone(zone_).distance(x); }
+  static std::array<NodeId, 2> key(NodeId a, NodeId b) { return {std::min(a, b), std::max(a, b)}; }
+
+  /// What holds all of the nodes: the boundary elements that contain them.
+  Hold hold(std::span<const NodeId> nodes) const {
+    Hold h;
+    h.origin = at(nodes[0]);
+    for (auto e : topo_.around.of(nodes[0])) {
+      if (!topo_.is_virtual(e)) continue;
+      const Element& v = topo_.elements[e];
+      if (!std::all_of(nodes.begin(), nodes.end(),
+                       [&](NodeId n) { return Topology<3>::has(v, n); }))
+        continue;
+      if (is_wall(e)) {
+        h.add_plane(facet_normal<3>({at(v[1]), at(v[2]), at(v[3])}));
+      } else {
+        h.add_zone(topo_.label[e] - first_interface_);
+      }
+    }
+    return h;
+  }
+
+  double quality_of(const Element& e, NodeId moved, const Vec<3>& x) const {
+    Corners<3> p;
+    Packed<3> m = Packed<3>::zero();
+    for (int k = 0; k < 4; ++k) {
+      p[k] = e[k] == moved ? x : at(e[k]);
+      m += metric_[e[k]];
+    }
+    for (double& c : m.c) c *= 0.25;
+    return quality<3>(p, m.full());
+  }
+
+  bool move(NodeId n, const Vec<3>& x) {
+    double before = 1, after = 1;
+    for (auto e : topo_.around.of(n)) {
+      if (topo_.is_virtual(e)) continue;
+      before = std::min(before, quality_of(topo_.elements[e], 0, x));
+      after = std::min(after, quality_of(topo_.elements[e], n, x));
+    }
+    if (after < std::min(poor_quality, 0.5 * before) || after <= 0) return false;
+    topo_.points[n] = x;
+    ++snapped_;
+    return true;
+  }
+
+  NodeId add_node(const Vec<3>& x, std::span<const NodeId> of, std::span<const double> weights) {
+    const NodeId n = topo_.add_node(x);
+    Packed<3> c = Packed<3>::zero();
+    for (std::size_t k = 0; k < of.size(); ++k) c.add(weights[k], carrier_.carry(metric_[of[k]]));
+    metric_.push_back(metric_at_ ? Packed<3>::from(metric_at_(x)) : carrier_.metric(c));
+    phi_.push_back(0);
+    locked_.push_back(0);
+    return n;
+  }
+
+  /// Puts a node at x, on or near the edge, face or inside of the element that the nodes make, into
+  /// all elements that contain them. 0 when an element would be turned or flat.
+  NodeId split_at(std::span<const NodeId> of, const Vec<3>& x, std::span<const double> weights) {
+    star_.clear();
+    for (auto e : topo_.around.of(of[0]))
+      if (std::all_of(of.begin(), of.end(),
+                      [&](NodeId n) { return Topology<3>::has(topo_.elements[e], n); }))
+        star_.push_back(e);
+    for (auto e : star_) {
+      if (topo_.is_virtual(e)) continue;
+      auto p = corners(topo_.elements[e]);
+      const double whole = signed_measure<3>(p);
+      for (int k = 0; k < 4; ++k) {
+        const auto place = std::find(of.begin(), of.end(), topo_.elements[e][k]);
+        if (place == of.end()) continue;
+        const Vec<3> kept = p[k];
+        p[k] = x;
+        const double share = weights[static_cast<std::size_t>(place - of.begin())];
+        if (!(signed_measure<3>(p) > 0.2 * share * whole)) return 0;
+        p[k] = kept;
+      }
+    }
+    const NodeId n = add_node(x, of, weights);
+    for (auto e : star_) {
+      const Element old = topo_.elements[e];
+      const std::int32_t label = topo_.label[e];
+      topo_.remove(e);
+      for (NodeId gone : of) {
+        Element next = old;
+        std::replace(next.begin(), next.end(), gone, n);
+        topo_.add(next, label);
+      }
+    }
+    if (of.size() == 2 && features_.erase(key(of[0], of[1])) > 0) {
+      features_.insert(key(of[0], n));
+      features_.insert(key(n, of[1]));
+    }
+    return n;
+  }
+
+  Corners<3> corners(const Element& e) const { return {at(e[0]), at(e[1]), at(e[2]), at(e[3])}; }
+
+  static Weights weights_in(const Corners<3>& p, const Vec<3>& x) {
+    const Vec<3> w = edge_matrix<3>(p).inverse() * (x - p[0]);
+    return {1 - w.sum(), w[0], w[1], w[2]};
+  }
+
+  /// Brings a node to x, which lies in the element: one that is there, a near one that may move, or
+  /// a new one. `weights` that are zero are so on purpose. 0 when it cannot be done.
+  NodeId bring_node(std::int32_t e, Weights weights, const Vec<3>& x) {
+    const Element nodes = topo_.elements[e];
+    Packed<3> m = Packed<3>::zero();
+    for (NodeId n : nodes) m.add(0.25, metric_[n]);
+    std::array<int, 4> order{0, 1, 2, 3};
+    std::array<double, 4> far{};
+    for (int k = 0; k < 4; ++k) far[k] = m.quad(at(nodes[k]) - x);
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return far[a] < far[b]; });
+    for (int k : order) {
+      const NodeId n = nodes[k];
+      const double d = (at(n) - x).norm();
+      if (d <= exact_ || (locked_[n] && d <= 0.1 * on_)) {
+        if (!locked_[n] && hold_allows(std::array{n}, x)) topo_.points[n] = x;
+        return lock(n);
+      }
+      if (far[k] > params_.snap * params_.snap || locked_[n] || weights[k] <= 0) continue;
+      if (hold_allows(std::array{n}, x) && move(n, x)) return lock(n);
+    }
+    // The sub-simplices of fewest nodes first.
+    for (int size = 2; size <= 4; ++size) {
+      struct Choice {
+        unsigned bits;
+        double far2;
+      };
+      std::vector<Choice> choices;
+      for (unsigned bits = 1; bits < 16; ++bits) {
+        if (std::popcount(bits) != size) continue;
+        bool fits = true;
+        for (int k = 0; k < 4; ++k) fits = fits && ((bits >> k & 1) == 0 || weights[k] > 0);
+        if (fits) choices.push_back({bits, m.quad(x - nearest_in(nodes, bits, weights))});
+      }
+      std::sort(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) {
+        return a.far2 != b.far2 ? a.far2 < b.far2 : a.bits < b.bits;
+      });
+      for (const Choice& c : choices) {
+        std::vector<NodeId> of;
+        std::vector<double> share;
+        double sum = 0;
+        for (int k = 0; k < 4; ++k)
+          if (c.bits >> k & 1) {
+            of.push_back(nodes[k]);
+            share.push_back(weights[k]);
+            sum += weights[k];
+          }
+        for (double& s : share) s /= sum;
+        if (size < 4) {
+          const double off = (x - nearest_in(nodes, c.bits, weights)).norm();
+          const bool there = off <= exact_;
+          if (!there && c.far2 > close * close) continue;
+          if (!there && !hold_allows(of, x)) continue;
+          if (!there && size == 2 && features_.contains(key(of[0], of[1]))) continue;
+        }
+        if (const NodeId n = split_at(of, x, share)) return lock(n);
+      }
+    }
+    return 0;
+  }
+
+  NodeId lock(NodeId n) {
+    locked_[n] = 1;
+    return n;
+  }
+
+  /// The point of the sub-simplex that has the weights of its nodes.
+  Vec<3> nearest_in(const Element& nodes, unsigned bits, const Weights& weights) const {
+    Vec<3> x = Vec<3>::Zero();
+    double sum = 0;
+    for (int k = 0; k < 4; ++k)
+      if (bits >> k & 1) {
+        x += weights[k] * at(nodes[k]);
+        sum += weights[k];
+      }
+    return x / sum;
+  }
+
+  bool hold_allows(std::span<const NodeId> nodes, const Vec<3>& x) const {
+    return hold(nodes).allows(partition_, x, on_);
+  }
+
+  /// The element that contains x, seen from the place of x in the mesh that was given.
+  std::optional<std::int32_t> locate(const Vec<3>& x) const {
+    const auto start = locator_.locate(x);
+    if (!start.inside && start.distance2 > on_ * on_) return std::nullopt;
+    // Elements only became smaller: what contains x touches a node nearby.
+    std::vector<NodeId> front(initial_[start.element].begin(), initial_[start.element].end());
+    std::set<NodeId> seen(front.begin(), front.end());
+    double best = -std::numeric_limits<double>::infinity();
+    std::optional<std::int32_t> found;
+    for (int ring = 0; ring < 12 && best < -1e-9; ++ring) {
+      std::vector<NodeId> next;
+      for (NodeId n : front)
+        for (auto e : topo_.around.of(n)) {
+          if (topo_.is_virtual(e)) continue;
+          const Weights w = weights_in(corners(topo_.elements[e]), x);
+          const double least = *std::min_element(w.begin(), w.end());
+          const bool better = least > best + 1e-12;
+          if (better && (least < -1e-9 || active(e) || !found)) {
+            best = least;
+            found = e;
+          }
+          for (NodeId v : topo_.elements[e])
+            if (seen.insert(v).second) next.push_back(v);
+        }
+      front = std::move(next);
+    }
+    if (best < -1e-6) return std::nullopt;
+    return found;
+  }
+
+  /// Whether x lies in the domain and in no zone of higher priority.
+  bool reachable(const Vec<3>& x) const {
+    const auto place = locator_.locate(x);
+    if (!place.inside && place.distance2 > on_ * on_) return false;
+    for (int k = 0; k < zone_; ++k) {
+      const Box<3>& box = partition_.box(k);
+      if ((x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm() > on_) continue;
+      if (partition_.zone(k).distance(x) < -on_) return false;
+    }
+    return true;
+  }
+
+  bool follow_features(const ReferenceSurface<3>& surface, const Progress& progress) {
+    const auto chains = feature_chains(surface, chain_share * params_.tolerance);
+    for (std::int32_t c : surface.corners) {
+      if (progress.cancelled()) return false;
+      if (reachable(surface.points[c])) place(surface.points[c]);
+    }
+    for (std::size_t i = 0; i < chains.size(); ++i) {
+      NodeId reached = 0;
+      for (std::size_t k = 0; k + 1 < chains[i].size(); ++k) {
+        if (progress.cancelled()) return false;
+        reached = follow(chains[i][k], chains[i][k + 1], reached);
+      }
+      progress.report(static_cast<double>(i + 1) / static_cast<double>(chains.size()));
+    }
+    return true;
+  }
+
+  NodeId place(const Vec<3>& x) {
+    const auto e = locate(x);
+    if (!e) return 0;
+    Weights w = weights_in(corners(topo_.elements[*e]), x);
+    for (double& k : w)
+      if (k < 1e-9) k = 0;
+    return bring_node(*e, w, x);
+  }
+
+  /// Makes the segment a chain of mesh edges, as far as it is reachable. `from`: the node at p, if
+  /// the segment before has reached it. Returns the node at q, or 0.
+  NodeId follow(const Vec<3>& p, const Vec<3>& q, NodeId from) {
+    constexpr int samples = 16;
+    int next = 0;
+    NodeId now = from;
+    while (true) {
+      if (now == 0) {
+        // Start in the middle of what is reachable, and look back first.
+        while (next <= samples && !reachable(p + (q - p) * next / samples)) ++next;
+        if (next > samples) return 0;
+        const int first = next;
+        while (next + 1 <= samples && reachable(p + (q - p) * (next + 1) / samples)) ++next;
+        const int begin = first == 0 ? 0 : (first + next) / 2;
+        now = place(p + (q - p) * begin / samples);
+        if (now == 0) {
+          ++lost_;
+          return 0;
+        }
+        if (begin > 0) walk(now, p);
+        next = begin;
+      }
+      const auto [end, arrived] = walk(now, q);
+      if (arrived) return end;
+      const double t = (at(end) - p).dot(q - p) / (q - p).squaredNorm();
+      next = std::max(next + 1, static_cast<int>(std::ceil(t * samples + 0.01)));
+      now = 0;
+    }
+  }
+
+  /// Goes from a node towards x, making mesh edges of the way, until there or where the way leaves
+  /// what is left of the background.
+  std::pair<NodeId, bool> walk(NodeId from, const Vec<3>& x) {
+    NodeId now = from;
+    for (int step = 0; step < 4000; ++step) {
+      const Vec<3> way = x - at(now);
+      const double left = way.norm();
+      if (left <= std::max(exact_, 0.1 * on_)) return {now, true};
+      // The element into which the way leads: x = now + sum w_k (p_k - now).
+      double best = -1e-7;
+      std::int32_t into = -1;
+      Weights weights{};
+      for (auto e : topo_.around.of(now)) {
+        if (!active(e)) continue;
+        const Element& nodes = topo_.elements[e];
+        Mat<3> a;
+        std::array<int, 3> place{};
+        for (int k = 0, j = 0; k < 4; ++k)
+          if (nodes[k] != now) {
+            place[j] = k;
+            a.col(j++) = at(nodes[k]) - at(now);
+          }
+        const Vec<3> w = a.inverse() * way;
+        const double least = w.minCoeff() / w.cwiseAbs().maxCoeff();
+        if (!(least > best)) continue;
+        best = least;
+        into = e;
+        weights = {};
+        for (int j = 0; j < 3; ++j) weights[place[j]] = w[j];
+        if (best > 1e-7) break;
+      }
+      if (into < 0) return {now, false};
+      const Element nodes = topo_.elements[into];
+      const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+      const double largest = *std::max_element(weights.begin(), weights.end());
+      for (double& w : weights)
+        if (w < 1e-7 * largest) w = 0;
+      Vec<3> target = x;
+      if (sum > 1 - 1e-9) {
+        const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
+        for (double& w : weights) w /= all;
+        target = sum > 1 + 1e-9 ? Vec<3>(at(now) + way / sum) : x;
+      } else {
+        for (int k = 0; k < 4; ++k)
+          if (nodes[k] == now) weights[k] = 1 - sum;
+      }
+      const NodeId reached = bring_node(into, weights, target);
+      if (reached == 0 || reached == now) {
+        ++lost_;
+        return {now, false};
+      }
+      features_.insert(key(now, reached));
+      if ((x - at(reached)).norm() >= left) {
+        ++lost_;
+        return {reached, false};
+      }
+      now = reached;
+    }
+    ++lost_;
+    return {now, false};
+  }
+
+  /// The signed distance of the zone at the nodes of the background.
+  bool measure(const Progress& progress) {
+    std::vector<char> wanted(topo_.points.size(), 0);
+    for (std::int32_t e = 0; e < count(); ++e)
+      if (active(e))
+        for (NodeId n : topo_.elements[e]) wanted[n] = 1;
+    nodes_.clear();
+    for (std::size_t n = 1; n < wanted.size(); ++n)
+      if (wanted[n]) nodes_.push_back(static_cast<NodeId>(n));
+    const Box<3>& box = partition_.box(zone_);
+    return parallel_each(nodes_.size(), params_.threads, progress, [&](std::size_t i) {
+      const NodeId n = nodes_[i];
+      const Vec<3>& x = at(n);
+      // Far from the box its distance tells enough.
+      const double beyond = (x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm();
+      phi_[n] = metric_[n].quad(Vec<3>::Constant(beyond)) > 100 ? beyond : phi_at(x);
+      if (std::abs(phi_[n]) <= exact_ || (locked_[n] && std::abs(phi_[n]) <= on_)) phi_[n] = 0;
+    });
+  }
+
+  bool snap(const Progress& progress) {
+    std::vector<std::pair<double, NodeId>> near;
+    for (NodeId n : nodes_) {
+      if (phi_[n] == 0 || locked_[n]) continue;
+      const ZoneDistance<3> d = partition_.zone(zone_).at(at(n));
+      const double across = std::abs(d.distance) * std::sqrt(metric_[n].quad(d.normal));
+      if (across < params_.snap) near.emplace_back(across, n);
+    }
+    std::sort(near.begin(), near.end());
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      if (i % 256 == 0) {
+        if (progress.cancelled()) return false;
+        progress.report(static_cast<double>(i) / static_cast<double>(near.size()));
+      }
+      const NodeId n = near[i].second;
+      Hold h = hold(std::array{n});
+      h.add_zone(zone_);
+      const auto x = h.settle(partition_, at(n), on_);
+      if (!x || metric_[n].quad(*x - at(n)) > 1) continue;
+      if (move(n, *x)) phi_[n] = 0;
+    }
+    // What may not move but is there within a share of the tolerance is left there.
+    for (NodeId n : nodes_)
+      if (std::abs(phi_[n]) <= on_) phi_[n] = 0;
+    return true;
+  }
+
+  /// Where the edge crosses the border, as a share of it.
+  std::optional<double> crossing(NodeId a, NodeId b) const {
+    const Vec<3> e = at(b) - at(a);
+    const double length = e.norm();
+    if (std::abs(phi_[a]) + std::abs(phi_[b]) >= length && phi_[a] * phi_[b] >= 0)
+      return std::nullopt;
+    const double dip = dip_share * params_.tolerance;
+    double deep = std::numeric_limits<double>::infinity();
+    double t0 = 0, f0 = phi_[a], t1 = 1, f1 = phi_[b];
+    if (!(f0 * f1 < 0)) {
+      constexpr int samples = 8;
+      double last_t = 0, last = f0;
+      bool found = false;
+      for (int i = 1; i <= samples && !found; ++i) {
+        const double t = static_cast<double>(i) / samples;
+        const double f = i == samples ? f1 : phi_at(at(a) + t * e);
+        if (std::abs(f) <= dip && i < samples) continue;
+        if (f == 0) continue;
+        if (last * f < 0) {
+          t0 = last_t, f0 = last, t1 = t, f1 = f;
+          found = true;
+        }
+        last_t = t;
+        last = f;
+      }
+      if (!found) return std::nullopt;
+      deep = std::min(std::abs(f0), std::abs(f1));
+    }
+    // Regula falsi, Illinois.
+    double t = t0;
+    for (int i = 0; i < 60; ++i) {
+      t = t0 - f0 * (t1 - t0) / (f1 - f0);
+      if (!(t > std::min(t0, t1) && t < std::max(t0, t1))) t = 0.5 * (t0 + t1);
+      const double f = phi_at(at(a) + t * e);
+      if (std::abs(f) <= 1e-3 * on_ || std::abs(t1 - t0) < 1e-12) break;
+      if (f * f1 < 0) {
+        t0 = t1;
+        f0 = f1;
+      } else {
+        f0 *= 0.5;
+      }
+      t1 = t;
+      f1 = f;
+    }
+    if (deep <= smooth_dip_share * params_.tolerance) {
+      const Zone<3>& zone = partition_.zone(zone_);
+      const Vec<3> normal = zone.at(at(a) + t * e).normal;
+      if (normal.dot(zone.at(at(a)).normal) > smooth_turn &&
+          normal.dot(zone.at(at(b)).normal) > smooth_turn)
+        return std::nullopt;
+    }
+    return t;
+  }
+
+  bool split(const Progress& progress) {
+    std::size_t first = 1;  // edges of older nodes are known not to cross
+    for (int round = 0; round < split_rounds; ++round) {
+      if (progress.cancelled()) return false;
+      progress.report(static_cast<double>(round) / split_rounds);
+      std::vector<std::array<NodeId, 2>> edges;
+      for (std::int32_t e = 0; e < count(); ++e) {
+        if (!active(e)) continue;
+        const Element& nodes = topo_.elements[e];
+        for (int i = 0; i < 4; ++i)
+          for (int j = 0; j < i; ++j)
+            if (static_cast<std::size_t>(std::max(nodes[i], nodes[j])) >= first)
+              edges.push_back(key(nodes[i], nodes[j]));
+      }
+      std::sort(edges.begin(), edges.end());
+      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+      std::vector<double> where(edges.size(), -1);
+      if (!parallel_each(edges.size(), params_.threads, {}, [&](std::size_t i) {
+            if (const auto t = crossing(edges[i][0], edges[i][1])) where[i] = *t;
+          }))
+        return false;
+      first = topo_.points.size();
+      bool any = false;
+      for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (where[i] <= 0) continue;
+        any = true;
+        const auto [a, b] = edges[i];
+        const double t = where[i];
+        const std::array<double, 2> share{1 - t, t};
+        const Vec<3> x = (1 - t) * at(a) + t * at(b);
+        NodeId n = 0;
+        Hold h = hold(edges[i]);
+        if (!h.free()) {
+          h.add_zone(zone_);
+          const auto y = h.settle(partition_, x, on_);
+          if (y && (*y - x).norm() < 0.3 * (at(b) - at(a)).norm())
+            n = split_at(edges[i], *y, share);
+        }
+        if (n == 0) split_at(edges[i], x, share);
+      }
+      if (!any) break;
+    }
+    return true;
+  }
+
+  void tag() {
+    std::vector<std::int32_t> inside;
+    for (std::int32_t e = 0; e < count(); ++e) {
+      if (!active(e)) continue;
+      const Element& nodes = topo_.elements[e];
+      double most = 0;
+      for (NodeId n : nodes)
+        if (std::abs(phi_[n]) > std::abs(most)) most = phi_[n];
+      if (most == 0) most = phi_at((at(nodes[0]) + at(nodes[1]) + at(nodes[2]) + at(nodes[3])) / 4);
+      if (most < 0) inside.push_back(e);
+    }
+    for (auto e : inside) topo_.label[e] = zone_;
+    for (auto e : inside)
+      for (int k = 0; k < 4; ++k) {
+        const auto face = opposite_facet<3>(topo_.elements[e], k);
+        for (auto other : topo_.around.of(face[0]))
+          if (active(other) && std::all_of(face.begin(), face.end(), [&](NodeId n) {
+                return Topology<3>::has(topo_.elements[other], n);
+              })) {
+            topo_.add(Topology<3>::virtual_element(face), first_interface_ + zone_);
+            break;
+          }
+      }
+  }
+
+  /// Splits the edges of the zone's interface whose middle is too far from the border there, until
+  /// the chords keep the tolerance.
+  bool bend(const Progress& progress) {
+    const std::int32_t label = first_interface_ + zone_;
+    std::size_t first = 1;
+    for (int round = 0; round < bend_rounds; ++round) {
+      if (progress.cancelled()) return false;
+      progress.report(static_cast<double>(round) / bend_rounds);
+      std::vector<std::array<NodeId, 2>> edges;
+      for (std::int32_t e = 0; e < count(); ++e) {
+        if (!topo_.alive(e) || !topo_.is_virtual(e) || topo_.label[e] != label) continue;
+        const Element& v = topo_.elements[e];
+        for (int i = 1; i < 4; ++i) {
+          const NodeId a = v[i], b = v[1 + i % 3];
+          if (static_cast<std::size_t>(std::max(a, b)) >= first) edges.push_back(key(a, b));
+        }
+      }
+      std::sort(edges.begin(), edges.end());
+      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+      std::vector<double> off(edges.size(), 0);
+      if (!parallel_each(edges.size(), params_.threads, {}, [&](std::size_t i) {
+            off[i] = std::abs(phi_at(0.5 * (at(edges[i][0]) + at(edges[i][1]))));
+          }))
+        return false;
+      first = topo_.points.size();
+      std::vector<std::pair<double, std::size_t>> far;
+      for (std::size_t i = 0; i < edges.size(); ++i)
+        if (off[i] > bend_share * params_.tolerance) far.emplace_back(-off[i], i);
+      std::sort(far.begin(), far.end());
+      for (const auto& [negative, i] : far) {
+        const auto [a, b] = edges[i];
+        const Vec<3> x = 0.5 * (at(a) + at(b));
+        const auto y = hold(edges[i]).settle(partition_, x, on_);
+        if (!y || (*y - x).norm() > 0.3 * (at(b) - at(a)).norm()) continue;
+        split_at(edges[i], *y, std::array{0.5, 0.5});
+      }
+      if (topo_.points.size() == first) break;
+    }
+    return true;
+  }
+
+  const Partition<3>& partition_;
+  const CutParams& params_;
+  const MetricFunction<3>& metric_at_;
+  const std::vector<Element>& initial_;
+  ElementLocator<3> locator_;
+  double on_;         ///< mm: what is this near to a border lies on it
+  double exact_ = 0;  ///< mm: points this near are one
+  MetricCarrier<3> carrier_{MetricMean::size};
+  int zone_ = 0;
+  std::int32_t first_interface_ = 0;  ///< label of the interface of zone 0; below: facets
+  Topology<3> topo_;
+  std::vector<Packed<3>> metric_;  ///< [node]
+  std::vector<double> phi_;        ///< [node] of the zone that is being cut
+  std::vector<char> locked_;       ///< [node] on a corner or feature edge
+  std::vector<NodeId> nodes_;      ///< of the background
+  std::vector<std::int32_t> star_;
+  std::set<std::array<NodeId, 2>> features_;
+  std::size_t snapped_ = 0, lost_ = 0, old_nodes_ = 0;
+};
+
+}  // namespace
+
+Result<CutMesh> cut_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>& metric,
+                               const Partition<3>& partition,
+                               const std::vector<ReferenceSurface<3>>& surfaces,
+                               const CutParams& params, const Progress& progress,
+                               const MetricFunction<3>& metric_at) {
+  Cutter cutter(mesh, metric, partition, params, metric_at);
+  const int zones = partition.background();
+  for (int k = 0; k < zones; ++k)
+    if (!cutter.cut(k, surfaces[k],
+                    progress.portion(static_cast<double>(k) / zones,
+                                     static_cast<double>(k + 1) / zones, "cutting")))
+      return cancelled_error();
+  return cutter.result(mesh);
+}
+
+}  // namespace lamella
