@@ -308,7 +308,7 @@ class Cutter {
   /// The element that contains x, seen from the place of x in the mesh that was given.
   std::optional<std::int32_t> locate(const Vec<3>& x) const {
     const auto start = locator_.locate(x);
-    if (!start.inside && start.distance2 > on_ * on_) return std::nullopt;
+    if (!start.inside && start.distance2 > exact_ * exact_) return std::nullopt;
     // Elements only became smaller: what contains x touches a node nearby.
     std::vector<NodeId> front(initial_[start.element].begin(), initial_[start.element].end());
     std::set<NodeId> seen(front.begin(), front.end());
@@ -338,7 +338,7 @@ class Cutter {
   /// Whether x lies in the domain and in no zone of higher priority.
   bool reachable(const Vec<3>& x) const {
     const auto place = locator_.locate(x);
-    if (!place.inside && place.distance2 > on_ * on_) return false;
+    if (!place.inside && place.distance2 > exact_ * exact_) return false;
     for (int k = 0; k < zone_; ++k) {
       const Box<3>& box = partition_.box(k);
       if ((x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm() > on_) continue;
@@ -390,7 +390,8 @@ class Cutter {
         now = place(p + (q - p) * begin / samples);
         if (now == 0) {
           ++lost_;
-          return 0;
+          next = begin + 1;
+          continue;
         }
         if (begin > 0) walk(now, p);
         next = begin;
