@@ -399,29 +399,51 @@ class Cutter {
     return true;
   }
 
+  /// The element of the background behind a face of an element; -1: none.
+  std::int32_t across(std::int32_t e, int k) const {
+    const auto face = opposite_facet<3>(mesh_.topo.elements[e], k);
+    for (auto other : mesh_.topo.around.of(face[0]))
+      if (other != e && mesh_.active(other) && std::all_of(face.begin(), face.end(), [&](NodeId n) {
+            return Topology<3>::has(mesh_.topo.elements[other], n);
+          }))
+        return other;
+    return -1;
+  }
+
   void tag() {
-    std::vector<std::int32_t> inside;
+    std::vector<std::int32_t> inside, flat;
     for (std::int32_t e = 0; e < mesh_.count(); ++e) {
       if (!mesh_.active(e)) continue;
       const Element& nodes = mesh_.topo.elements[e];
       double most = 0;
       for (NodeId n : nodes)
         if (std::abs(phi_[n]) > std::abs(most)) most = phi_[n];
-      if (most == 0) most = phi_at((at(nodes[0]) + at(nodes[1]) + at(nodes[2]) + at(nodes[3])) / 4);
+      if (most == 0) {
+        most = phi_at((at(nodes[0]) + at(nodes[1]) + at(nodes[2]) + at(nodes[3])) / 4);
+        if (std::abs(most) <= dip_share * params_.tolerance) flat.push_back(e);
+      }
       if (most < 0) inside.push_back(e);
     }
+    // A splinter between nodes on the border goes to the side that most of its faces touch.
+    std::vector<char> is_inside(static_cast<std::size_t>(mesh_.count()), 0);
+    for (auto e : inside) is_inside[e] = 1;
+    for (auto e : flat) {
+      int other = 0;
+      for (int k = 0; k < 4; ++k) {
+        const std::int32_t next = across(e, k);
+        other += next >= 0 && is_inside[next] != is_inside[e];
+      }
+      if (other >= 3) is_inside[e] = !is_inside[e];
+    }
+    inside.clear();
+    for (std::int32_t e = 0; e < mesh_.count(); ++e)
+      if (is_inside[e]) inside.push_back(e);
     for (auto e : inside) mesh_.topo.label[e] = zone_;
     for (auto e : inside)
-      for (int k = 0; k < 4; ++k) {
-        const auto face = opposite_facet<3>(mesh_.topo.elements[e], k);
-        for (auto other : mesh_.topo.around.of(face[0]))
-          if (mesh_.active(other) && std::all_of(face.begin(), face.end(), [&](NodeId n) {
-                return Topology<3>::has(mesh_.topo.elements[other], n);
-              })) {
-            mesh_.topo.add(Topology<3>::virtual_element(face), mesh_.first_interface + zone_);
-            break;
-          }
-      }
+      for (int k = 0; k < 4; ++k)
+        if (across(e, k) >= 0)
+          mesh_.topo.add(Topology<3>::virtual_element(opposite_facet<3>(mesh_.topo.elements[e], k)),
+                         mesh_.first_interface + zone_);
   }
 
   /// Splits the edges of the zone's interface whose middle is too far from the border there, until
