@@ -27,13 +27,14 @@ struct Exact {
   AdaptReport adapt;
 };
 
-/// From a mesh of the domain that is fine around the borders between regions to a conforming mesh
-/// of the regions: cut along the borders (interface_cut.h), then adapted to the metric with the
-/// interfaces held on `surfaces` within the chord tolerance. `surfaces`: the boundary of each
-/// region's zone, without the background; what a region without facets cuts out is its surface
-/// itself. Boundary nodes move in the boundary only. A cancel during the adaption returns the valid
-/// mesh reached so far, with `adapt.cancelled` set.
-/// Errors: bad_input (sizes of arrays, no elements), cancelled, memory.
+/// From a mesh of the domain (one body) that is fine around the borders between regions to a
+/// conforming mesh of the regions: sizes along the borders are made small enough for the chord
+/// tolerance (chord_metric.h), then it is cut along the borders (interface_cut.h), then adapted to
+/// the metric with the interfaces held on `surfaces` within the chord tolerance. `surfaces`: the
+/// boundary of each region's zone, without the background; what a region without facets cuts out is
+/// its surface itself. Boundary nodes move in the boundary only. A cancel during the last adaption
+/// returns the valid mesh reached so far, with `adapt.cancelled` set. Errors: bad_input (sizes of
+/// arrays, no elements), cancelled, memory.
 Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>& metric,
                                const Partition<3>& partition,
                                const std::vector<ReferenceSurface<3>>& surfaces,

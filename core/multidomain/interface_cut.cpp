@@ -8,23 +8,13 @@
 #include <set>
 
 #include "core/base/parallel.h"
-#include "core/geometry/foot.h"
 #include "core/mesh/element_locator.h"
-#include "core/mesh/quality.h"
+#include "core/multidomain/cut_topology.h"
 #include "core/multidomain/feature_chains.h"
-#include "core/multidomain/hold.h"
-#include "core/optimize/metric_carrier.h"
-#include "core/optimize/topology.h"
 
 namespace lamella {
 namespace {
 
-/// No move may bring an element below this quality, or below half of what was there before.
-constexpr double poor_quality = 0.05;
-/// Metric distance from an edge or a face within which a new point takes its place.
-constexpr double close = 0.12;
-/// Of the tolerance: nodes this near to a border lie on it.
-constexpr double on_share = 0.02;
 /// Of the tolerance: how far an edge may dip through a border, and through a smooth one, where the
 /// chord of a curved border does.
 constexpr double dip_share = 0.03;
@@ -41,8 +31,8 @@ constexpr double bend_share = 0.6;
 /// Rounds of halving edges that are too far.
 constexpr int bend_rounds = 4;
 
-using Element = std::array<NodeId, 4>;
-using Weights = std::array<double, 4>;
+using Element = CutTopology::Element;
+using Weights = CutTopology::Weights;
 
 class Cutter {
  public:
@@ -50,28 +40,10 @@ class Cutter {
          const CutParams& params, const MetricFunction<3>& metric_at)
       : partition_(partition),
         params_(params),
-        metric_at_(metric_at),
         initial_(mesh.elements),
         locator_(mesh),
-        on_(on_share * params.tolerance) {
-    auto elements = mesh.elements;
-    std::vector<std::int32_t> label(elements.size(), partition.background());
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-      elements.push_back(Topology<3>::virtual_element(mesh.facets[f]));
-      label.push_back(static_cast<std::int32_t>(f));
-    }
-    first_interface_ = static_cast<std::int32_t>(mesh.facets.size());
-    topo_ = Topology<3>::from(mesh.points, std::move(elements), std::move(label));
-    metric_.resize(mesh.points.size());
-    for (std::size_t n = 1; n < metric_.size(); ++n)
-      metric_[n] = Packed<3>::from(metric_at ? metric_at(mesh.points[n]) : metric[n]);
-    phi_.assign(mesh.points.size(), 0);
-    locked_.assign(mesh.points.size(), 0);
-    old_nodes_ = mesh.node_count();
-    Box<3> box;
-    for (std::size_t n = 1; n < mesh.points.size(); ++n) box.add(mesh.points[n]);
-    exact_ = 1e-10 * (box.hi - box.lo).norm();
-  }
+        old_nodes_(mesh.node_count()),
+        mesh_(mesh, metric, partition, params, metric_at) {}
 
   bool cut(int zone, const ReferenceSurface<3>& surface, const Progress& progress) {
     zone_ = zone;
@@ -86,229 +58,41 @@ class Cutter {
   CutMesh result(const SimplexMesh<3>& original) const {
     CutMesh out;
     SimplexMesh<3>& mesh = out.mesh;
-    mesh.points = topo_.points;
+    mesh.points = mesh_.topo.points;
     mesh.bodies = partition_.names();
     mesh.groups = original.groups;
     out.metric.push_back(Metric<3>::Identity());
-    for (std::size_t n = 1; n < metric_.size(); ++n) out.metric.push_back(metric_[n].full());
+    for (std::size_t n = 1; n < mesh_.metric.size(); ++n)
+      out.metric.push_back(mesh_.metric[n].full());
     for (const bool wall : {true, false}) {
-      for (std::int32_t e = 0; e < count(); ++e) {
-        if (!topo_.alive(e)) continue;
-        if (!topo_.is_virtual(e)) {
+      for (std::int32_t e = 0; e < mesh_.count(); ++e) {
+        if (!mesh_.topo.alive(e)) continue;
+        if (!mesh_.topo.is_virtual(e)) {
           if (!wall) continue;
-          mesh.elements.push_back(topo_.elements[e]);
-          mesh.element_body.push_back(topo_.label[e]);
-        } else if (is_wall(e) == wall) {
-          const auto f = static_cast<std::size_t>(topo_.label[e]);
-          mesh.facets.push_back(Topology<3>::facet_of(topo_.elements[e]));
+          mesh.elements.push_back(mesh_.topo.elements[e]);
+          mesh.element_body.push_back(mesh_.topo.label[e]);
+        } else if (mesh_.is_wall(e) == wall) {
+          const auto f = static_cast<std::size_t>(mesh_.topo.label[e]);
+          mesh.facets.push_back(Topology<3>::facet_of(mesh_.topo.elements[e]));
           mesh.facet_group.push_back(wall ? original.facet_group[f] : 0);
           mesh.facet_face.push_back(wall ? original.facet_face[f] : 0);
         }
       }
       if (wall) out.outer = mesh.facets.size();
     }
-    out.features.assign(features_.begin(), features_.end());
-    out.snapped = snapped_;
+    out.features.assign(mesh_.features.begin(), mesh_.features.end());
+    out.snapped = mesh_.moves;
     out.added = mesh.node_count() - old_nodes_;
     out.lost = lost_;
     return out;
   }
 
  private:
-  std::int32_t count() const { return static_cast<std::int32_t>(topo_.elements.size()); }
-  bool is_wall(std::int32_t e) const { return topo_.label[e] < first_interface_; }
-  bool active(std::int32_t e) const {
-    return topo_.alive(e) && !topo_.is_virtual(e) && topo_.label[e] == partition_.background();
-  }
-  const Vec<3>& at(NodeId n) const { return topo_.points[n]; }
   double phi_at(const Vec<3>& x) const { return partition_.zone(zone_).distance(x); }
-  static std::array<NodeId, 2> key(NodeId a, NodeId b) { return {std::min(a, b), std::max(a, b)}; }
-
-  /// What holds all of the nodes: the boundary elements that contain them.
-  Hold hold(std::span<const NodeId> nodes) const {
-    Hold h;
-    h.origin = at(nodes[0]);
-    for (auto e : topo_.around.of(nodes[0])) {
-      if (!topo_.is_virtual(e)) continue;
-      const Element& v = topo_.elements[e];
-      if (!std::all_of(nodes.begin(), nodes.end(),
-                       [&](NodeId n) { return Topology<3>::has(v, n); }))
-        continue;
-      if (is_wall(e)) {
-        h.add_plane(facet_normal<3>({at(v[1]), at(v[2]), at(v[3])}));
-      } else {
-        h.add_zone(topo_.label[e] - first_interface_);
-      }
-    }
-    return h;
-  }
-
-  double quality_of(const Element& e, NodeId moved, const Vec<3>& x) const {
-    Corners<3> p;
-    Packed<3> m = Packed<3>::zero();
-    for (int k = 0; k < 4; ++k) {
-      p[k] = e[k] == moved ? x : at(e[k]);
-      m += metric_[e[k]];
-    }
-    for (double& c : m.c) c *= 0.25;
-    return quality<3>(p, m.full());
-  }
-
-  bool move(NodeId n, const Vec<3>& x) {
-    double before = 1, after = 1;
-    for (auto e : topo_.around.of(n)) {
-      if (topo_.is_virtual(e)) continue;
-      before = std::min(before, quality_of(topo_.elements[e], 0, x));
-      after = std::min(after, quality_of(topo_.elements[e], n, x));
-    }
-    if (after < std::min(poor_quality, 0.5 * before) || after <= 0) return false;
-    topo_.points[n] = x;
-    ++snapped_;
-    return true;
-  }
-
-  NodeId add_node(const Vec<3>& x, std::span<const NodeId> of, std::span<const double> weights) {
-    const NodeId n = topo_.add_node(x);
-    Packed<3> c = Packed<3>::zero();
-    for (std::size_t k = 0; k < of.size(); ++k) c.add(weights[k], carrier_.carry(metric_[of[k]]));
-    metric_.push_back(metric_at_ ? Packed<3>::from(metric_at_(x)) : carrier_.metric(c));
-    phi_.push_back(0);
-    locked_.push_back(0);
-    return n;
-  }
-
-  /// Puts a node at x, on or near the edge, face or inside of the element that the nodes make, into
-  /// all elements that contain them. 0 when an element would be turned or flat.
-  NodeId split_at(std::span<const NodeId> of, const Vec<3>& x, std::span<const double> weights) {
-    star_.clear();
-    for (auto e : topo_.around.of(of[0]))
-      if (std::all_of(of.begin(), of.end(),
-                      [&](NodeId n) { return Topology<3>::has(topo_.elements[e], n); }))
-        star_.push_back(e);
-    for (auto e : star_) {
-      if (topo_.is_virtual(e)) continue;
-      auto p = corners(topo_.elements[e]);
-      const double whole = signed_measure<3>(p);
-      for (int k = 0; k < 4; ++k) {
-        const auto place = std::find(of.begin(), of.end(), topo_.elements[e][k]);
-        if (place == of.end()) continue;
-        const Vec<3> kept = p[k];
-        p[k] = x;
-        const double share = weights[static_cast<std::size_t>(place - of.begin())];
-        if (!(signed_measure<3>(p) > 0.2 * share * whole)) return 0;
-        p[k] = kept;
-      }
-    }
-    const NodeId n = add_node(x, of, weights);
-    for (auto e : star_) {
-      const Element old = topo_.elements[e];
-      const std::int32_t label = topo_.label[e];
-      topo_.remove(e);
-      for (NodeId gone : of) {
-        Element next = old;
-        std::replace(next.begin(), next.end(), gone, n);
-        topo_.add(next, label);
-      }
-    }
-    if (of.size() == 2 && features_.erase(key(of[0], of[1])) > 0) {
-      features_.insert(key(of[0], n));
-      features_.insert(key(n, of[1]));
-    }
-    return n;
-  }
-
-  Corners<3> corners(const Element& e) const { return {at(e[0]), at(e[1]), at(e[2]), at(e[3])}; }
-
-  static Weights weights_in(const Corners<3>& p, const Vec<3>& x) {
-    const Vec<3> w = edge_matrix<3>(p).inverse() * (x - p[0]);
-    return {1 - w.sum(), w[0], w[1], w[2]};
-  }
-
-  /// Brings a node to x, which lies in the element: one that is there, a near one that may move, or
-  /// a new one. `weights` that are zero are so on purpose. 0 when it cannot be done.
-  NodeId bring_node(std::int32_t e, Weights weights, const Vec<3>& x) {
-    const Element nodes = topo_.elements[e];
-    Packed<3> m = Packed<3>::zero();
-    for (NodeId n : nodes) m.add(0.25, metric_[n]);
-    std::array<int, 4> order{0, 1, 2, 3};
-    std::array<double, 4> far{};
-    for (int k = 0; k < 4; ++k) far[k] = m.quad(at(nodes[k]) - x);
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return far[a] < far[b]; });
-    for (int k : order) {
-      const NodeId n = nodes[k];
-      const double d = (at(n) - x).norm();
-      if (d <= exact_ || (locked_[n] && d <= 0.1 * on_)) {
-        if (!locked_[n] && hold_allows(std::array{n}, x)) topo_.points[n] = x;
-        return lock(n);
-      }
-      if (far[k] > params_.snap * params_.snap || locked_[n] || weights[k] <= 0) continue;
-      if (hold_allows(std::array{n}, x) && move(n, x)) return lock(n);
-    }
-    // The sub-simplices of fewest nodes first.
-    for (int size = 2; size <= 4; ++size) {
-      struct Choice {
-        unsigned bits;
-        double far2;
-      };
-      std::vector<Choice> choices;
-      for (unsigned bits = 1; bits < 16; ++bits) {
-        if (std::popcount(bits) != size) continue;
-        bool fits = true;
-        for (int k = 0; k < 4; ++k) fits = fits && ((bits >> k & 1) == 0 || weights[k] > 0);
-        if (fits) choices.push_back({bits, m.quad(x - nearest_in(nodes, bits, weights))});
-      }
-      std::sort(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) {
-        return a.far2 != b.far2 ? a.far2 < b.far2 : a.bits < b.bits;
-      });
-      for (const Choice& c : choices) {
-        std::vector<NodeId> of;
-        std::vector<double> share;
-        double sum = 0;
-        for (int k = 0; k < 4; ++k)
-          if (c.bits >> k & 1) {
-            of.push_back(nodes[k]);
-            share.push_back(weights[k]);
-            sum += weights[k];
-          }
-        for (double& s : share) s /= sum;
-        if (size < 4) {
-          const double off = (x - nearest_in(nodes, c.bits, weights)).norm();
-          const bool there = off <= exact_;
-          if (!there && c.far2 > close * close) continue;
-          if (!there && !hold_allows(of, x)) continue;
-          if (!there && size == 2 && features_.contains(key(of[0], of[1]))) continue;
-        }
-        if (const NodeId n = split_at(of, x, share)) return lock(n);
-      }
-    }
-    return 0;
-  }
-
-  NodeId lock(NodeId n) {
-    locked_[n] = 1;
-    return n;
-  }
-
-  /// The point of the sub-simplex that has the weights of its nodes.
-  Vec<3> nearest_in(const Element& nodes, unsigned bits, const Weights& weights) const {
-    Vec<3> x = Vec<3>::Zero();
-    double sum = 0;
-    for (int k = 0; k < 4; ++k)
-      if (bits >> k & 1) {
-        x += weights[k] * at(nodes[k]);
-        sum += weights[k];
-      }
-    return x / sum;
-  }
-
-  bool hold_allows(std::span<const NodeId> nodes, const Vec<3>& x) const {
-    return hold(nodes).allows(partition_, x, on_);
-  }
-
   /// The element that contains x, seen from the place of x in the mesh that was given.
   std::optional<std::int32_t> locate(const Vec<3>& x) const {
     const auto start = locator_.locate(x);
-    if (!start.inside && start.distance2 > on_ * on_) return std::nullopt;
+    if (!start.inside && start.distance2 > mesh_.exact * mesh_.exact) return std::nullopt;
     // Elements only became smaller: what contains x touches a node nearby.
     std::vector<NodeId> front(initial_[start.element].begin(), initial_[start.element].end());
     std::set<NodeId> seen(front.begin(), front.end());
@@ -317,16 +101,16 @@ class Cutter {
     for (int ring = 0; ring < 12 && best < -1e-9; ++ring) {
       std::vector<NodeId> next;
       for (NodeId n : front)
-        for (auto e : topo_.around.of(n)) {
-          if (topo_.is_virtual(e)) continue;
-          const Weights w = weights_in(corners(topo_.elements[e]), x);
+        for (auto e : mesh_.topo.around.of(n)) {
+          if (mesh_.topo.is_virtual(e)) continue;
+          const Weights w = mesh_.weights_in(e, x);
           const double least = *std::min_element(w.begin(), w.end());
           const bool better = least > best + 1e-12;
-          if (better && (least < -1e-9 || active(e) || !found)) {
+          if (better && (least < -1e-9 || mesh_.active(e) || !found)) {
             best = least;
             found = e;
           }
-          for (NodeId v : topo_.elements[e])
+          for (NodeId v : mesh_.topo.elements[e])
             if (seen.insert(v).second) next.push_back(v);
         }
       front = std::move(next);
@@ -338,11 +122,11 @@ class Cutter {
   /// Whether x lies in the domain and in no zone of higher priority.
   bool reachable(const Vec<3>& x) const {
     const auto place = locator_.locate(x);
-    if (!place.inside && place.distance2 > on_ * on_) return false;
+    if (!place.inside && place.distance2 > mesh_.exact * mesh_.exact) return false;
     for (int k = 0; k < zone_; ++k) {
       const Box<3>& box = partition_.box(k);
-      if ((x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm() > on_) continue;
-      if (partition_.zone(k).distance(x) < -on_) return false;
+      if ((x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm() > mesh_.on) continue;
+      if (partition_.zone(k).distance(x) < -mesh_.on) return false;
     }
     return true;
   }
@@ -367,10 +151,10 @@ class Cutter {
   NodeId place(const Vec<3>& x) {
     const auto e = locate(x);
     if (!e) return 0;
-    Weights w = weights_in(corners(topo_.elements[*e]), x);
+    Weights w = mesh_.weights_in(*e, x);
     for (double& k : w)
       if (k < 1e-9) k = 0;
-    return bring_node(*e, w, x);
+    return mesh_.bring_node(*e, w, x);
   }
 
   /// Makes the segment a chain of mesh edges, as far as it is reachable. `from`: the node at p, if
@@ -390,7 +174,8 @@ class Cutter {
         now = place(p + (q - p) * begin / samples);
         if (now == 0) {
           ++lost_;
-          return 0;
+          next = begin + 1;
+          continue;
         }
         if (begin > 0) walk(now, p);
         next = begin;
@@ -410,14 +195,14 @@ class Cutter {
     for (int step = 0; step < 4000; ++step) {
       const Vec<3> way = x - at(now);
       const double left = way.norm();
-      if (left <= std::max(exact_, 0.1 * on_)) return {now, true};
+      if (left <= std::max(mesh_.exact, 0.1 * mesh_.on)) return {now, true};
       // The element into which the way leads: x = now + sum w_k (p_k - now).
       double best = -1e-7;
       std::int32_t into = -1;
       Weights weights{};
-      for (auto e : topo_.around.of(now)) {
-        if (!active(e)) continue;
-        const Element& nodes = topo_.elements[e];
+      for (auto e : mesh_.topo.around.of(now)) {
+        if (!mesh_.active(e)) continue;
+        const Element& nodes = mesh_.topo.elements[e];
         Mat<3> a;
         std::array<int, 3> place{};
         for (int k = 0, j = 0; k < 4; ++k)
@@ -435,7 +220,7 @@ class Cutter {
         if (best > 1e-7) break;
       }
       if (into < 0) return {now, false};
-      const Element nodes = topo_.elements[into];
+      const Element nodes = mesh_.topo.elements[into];
       const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
       const double largest = *std::max_element(weights.begin(), weights.end());
       for (double& w : weights)
@@ -449,12 +234,12 @@ class Cutter {
         for (int k = 0; k < 4; ++k)
           if (nodes[k] == now) weights[k] = 1 - sum;
       }
-      const NodeId reached = bring_node(into, weights, target);
+      const NodeId reached = mesh_.bring_node(into, weights, target);
       if (reached == 0 || reached == now) {
         ++lost_;
         return {now, false};
       }
-      features_.insert(key(now, reached));
+      mesh_.features.insert(mesh_.key(now, reached));
       if ((x - at(reached)).norm() >= left) {
         ++lost_;
         return {reached, false};
@@ -467,10 +252,11 @@ class Cutter {
 
   /// The signed distance of the zone at the nodes of the background.
   bool measure(const Progress& progress) {
-    std::vector<char> wanted(topo_.points.size(), 0);
-    for (std::int32_t e = 0; e < count(); ++e)
-      if (active(e))
-        for (NodeId n : topo_.elements[e]) wanted[n] = 1;
+    std::vector<char> wanted(mesh_.topo.points.size(), 0);
+    for (std::int32_t e = 0; e < mesh_.count(); ++e)
+      if (mesh_.active(e))
+        for (NodeId n : mesh_.topo.elements[e]) wanted[n] = 1;
+    phi_.assign(mesh_.topo.points.size(), 0);
     nodes_.clear();
     for (std::size_t n = 1; n < wanted.size(); ++n)
       if (wanted[n]) nodes_.push_back(static_cast<NodeId>(n));
@@ -480,17 +266,18 @@ class Cutter {
       const Vec<3>& x = at(n);
       // Far from the box its distance tells enough.
       const double beyond = (x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm();
-      phi_[n] = metric_[n].quad(Vec<3>::Constant(beyond)) > 100 ? beyond : phi_at(x);
-      if (std::abs(phi_[n]) <= exact_ || (locked_[n] && std::abs(phi_[n]) <= on_)) phi_[n] = 0;
+      phi_[n] = mesh_.metric[n].quad(Vec<3>::Constant(beyond)) > 100 ? beyond : phi_at(x);
+      if (std::abs(phi_[n]) <= mesh_.exact || (mesh_.locked[n] && std::abs(phi_[n]) <= mesh_.on))
+        phi_[n] = 0;
     });
   }
 
   bool snap(const Progress& progress) {
     std::vector<std::pair<double, NodeId>> near;
     for (NodeId n : nodes_) {
-      if (phi_[n] == 0 || locked_[n]) continue;
+      if (phi_[n] == 0 || mesh_.locked[n]) continue;
       const ZoneDistance<3> d = partition_.zone(zone_).at(at(n));
-      const double across = std::abs(d.distance) * std::sqrt(metric_[n].quad(d.normal));
+      const double across = std::abs(d.distance) * std::sqrt(mesh_.metric[n].quad(d.normal));
       if (across < params_.snap) near.emplace_back(across, n);
     }
     std::sort(near.begin(), near.end());
@@ -500,15 +287,15 @@ class Cutter {
         progress.report(static_cast<double>(i) / static_cast<double>(near.size()));
       }
       const NodeId n = near[i].second;
-      Hold h = hold(std::array{n});
+      Hold h = mesh_.hold(std::array{n});
       h.add_zone(zone_);
-      const auto x = h.settle(partition_, at(n), on_);
-      if (!x || metric_[n].quad(*x - at(n)) > 1) continue;
-      if (move(n, *x)) phi_[n] = 0;
+      const auto x = h.settle(partition_, at(n), mesh_.on);
+      if (!x || mesh_.metric[n].quad(*x - at(n)) > 1) continue;
+      if (mesh_.move(n, *x)) phi_[n] = 0;
     }
     // What may not move but is there within a share of the tolerance is left there.
     for (NodeId n : nodes_)
-      if (std::abs(phi_[n]) <= on_) phi_[n] = 0;
+      if (std::abs(phi_[n]) <= mesh_.on) phi_[n] = 0;
     return true;
   }
 
@@ -546,7 +333,7 @@ class Cutter {
       t = t0 - f0 * (t1 - t0) / (f1 - f0);
       if (!(t > std::min(t0, t1) && t < std::max(t0, t1))) t = 0.5 * (t0 + t1);
       const double f = phi_at(at(a) + t * e);
-      if (std::abs(f) <= 1e-3 * on_ || std::abs(t1 - t0) < 1e-12) break;
+      if (std::abs(f) <= 1e-3 * mesh_.on || std::abs(t1 - t0) < 1e-12) break;
       if (f * f1 < 0) {
         t0 = t1;
         f0 = f1;
@@ -572,13 +359,13 @@ class Cutter {
       if (progress.cancelled()) return false;
       progress.report(static_cast<double>(round) / split_rounds);
       std::vector<std::array<NodeId, 2>> edges;
-      for (std::int32_t e = 0; e < count(); ++e) {
-        if (!active(e)) continue;
-        const Element& nodes = topo_.elements[e];
+      for (std::int32_t e = 0; e < mesh_.count(); ++e) {
+        if (!mesh_.active(e)) continue;
+        const Element& nodes = mesh_.topo.elements[e];
         for (int i = 0; i < 4; ++i)
           for (int j = 0; j < i; ++j)
             if (static_cast<std::size_t>(std::max(nodes[i], nodes[j])) >= first)
-              edges.push_back(key(nodes[i], nodes[j]));
+              edges.push_back(mesh_.key(nodes[i], nodes[j]));
       }
       std::sort(edges.begin(), edges.end());
       edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -587,7 +374,7 @@ class Cutter {
             if (const auto t = crossing(edges[i][0], edges[i][1])) where[i] = *t;
           }))
         return false;
-      first = topo_.points.size();
+      first = mesh_.topo.points.size();
       bool any = false;
       for (std::size_t i = 0; i < edges.size(); ++i) {
         if (where[i] <= 0) continue;
@@ -597,60 +384,84 @@ class Cutter {
         const std::array<double, 2> share{1 - t, t};
         const Vec<3> x = (1 - t) * at(a) + t * at(b);
         NodeId n = 0;
-        Hold h = hold(edges[i]);
+        Hold h = mesh_.hold(edges[i]);
         if (!h.free()) {
           h.add_zone(zone_);
-          const auto y = h.settle(partition_, x, on_);
+          const auto y = h.settle(partition_, x, mesh_.on);
           if (y && (*y - x).norm() < 0.3 * (at(b) - at(a)).norm())
-            n = split_at(edges[i], *y, share);
+            n = mesh_.split_at(edges[i], *y, share);
         }
-        if (n == 0) split_at(edges[i], x, share);
+        if (n == 0) mesh_.split_at(edges[i], x, share);
       }
+      phi_.resize(mesh_.topo.points.size(), 0);
       if (!any) break;
     }
     return true;
   }
 
+  /// The element of the background behind a face of an element; -1: none.
+  std::int32_t across(std::int32_t e, int k) const {
+    const auto face = opposite_facet<3>(mesh_.topo.elements[e], k);
+    for (auto other : mesh_.topo.around.of(face[0]))
+      if (other != e && mesh_.active(other) && std::all_of(face.begin(), face.end(), [&](NodeId n) {
+            return Topology<3>::has(mesh_.topo.elements[other], n);
+          }))
+        return other;
+    return -1;
+  }
+
   void tag() {
-    std::vector<std::int32_t> inside;
-    for (std::int32_t e = 0; e < count(); ++e) {
-      if (!active(e)) continue;
-      const Element& nodes = topo_.elements[e];
+    std::vector<std::int32_t> inside, flat;
+    for (std::int32_t e = 0; e < mesh_.count(); ++e) {
+      if (!mesh_.active(e)) continue;
+      const Element& nodes = mesh_.topo.elements[e];
       double most = 0;
       for (NodeId n : nodes)
         if (std::abs(phi_[n]) > std::abs(most)) most = phi_[n];
-      if (most == 0) most = phi_at((at(nodes[0]) + at(nodes[1]) + at(nodes[2]) + at(nodes[3])) / 4);
+      if (most == 0) {
+        most = phi_at((at(nodes[0]) + at(nodes[1]) + at(nodes[2]) + at(nodes[3])) / 4);
+        if (std::abs(most) <= dip_share * params_.tolerance) flat.push_back(e);
+      }
       if (most < 0) inside.push_back(e);
     }
-    for (auto e : inside) topo_.label[e] = zone_;
-    for (auto e : inside)
+    // A splinter between nodes on the border goes to the side that most of its faces touch.
+    std::vector<char> is_inside(static_cast<std::size_t>(mesh_.count()), 0);
+    for (auto e : inside) is_inside[e] = 1;
+    for (auto e : flat) {
+      int other = 0;
       for (int k = 0; k < 4; ++k) {
-        const auto face = opposite_facet<3>(topo_.elements[e], k);
-        for (auto other : topo_.around.of(face[0]))
-          if (active(other) && std::all_of(face.begin(), face.end(), [&](NodeId n) {
-                return Topology<3>::has(topo_.elements[other], n);
-              })) {
-            topo_.add(Topology<3>::virtual_element(face), first_interface_ + zone_);
-            break;
-          }
+        const std::int32_t next = across(e, k);
+        other += next >= 0 && is_inside[next] != is_inside[e];
       }
+      if (other >= 3) is_inside[e] = !is_inside[e];
+    }
+    inside.clear();
+    for (std::int32_t e = 0; e < mesh_.count(); ++e)
+      if (is_inside[e]) inside.push_back(e);
+    for (auto e : inside) mesh_.topo.label[e] = zone_;
+    for (auto e : inside)
+      for (int k = 0; k < 4; ++k)
+        if (across(e, k) >= 0)
+          mesh_.topo.add(Topology<3>::virtual_element(opposite_facet<3>(mesh_.topo.elements[e], k)),
+                         mesh_.first_interface + zone_);
   }
 
   /// Splits the edges of the zone's interface whose middle is too far from the border there, until
   /// the chords keep the tolerance.
   bool bend(const Progress& progress) {
-    const std::int32_t label = first_interface_ + zone_;
+    const std::int32_t label = mesh_.first_interface + zone_;
     std::size_t first = 1;
     for (int round = 0; round < bend_rounds; ++round) {
       if (progress.cancelled()) return false;
       progress.report(static_cast<double>(round) / bend_rounds);
       std::vector<std::array<NodeId, 2>> edges;
-      for (std::int32_t e = 0; e < count(); ++e) {
-        if (!topo_.alive(e) || !topo_.is_virtual(e) || topo_.label[e] != label) continue;
-        const Element& v = topo_.elements[e];
+      for (std::int32_t e = 0; e < mesh_.count(); ++e) {
+        if (!mesh_.topo.alive(e) || !mesh_.topo.is_virtual(e) || mesh_.topo.label[e] != label)
+          continue;
+        const Element& v = mesh_.topo.elements[e];
         for (int i = 1; i < 4; ++i) {
           const NodeId a = v[i], b = v[1 + i % 3];
-          if (static_cast<std::size_t>(std::max(a, b)) >= first) edges.push_back(key(a, b));
+          if (static_cast<std::size_t>(std::max(a, b)) >= first) edges.push_back(mesh_.key(a, b));
         }
       }
       std::sort(edges.begin(), edges.end());
@@ -660,7 +471,7 @@ class Cutter {
             off[i] = std::abs(phi_at(0.5 * (at(edges[i][0]) + at(edges[i][1]))));
           }))
         return false;
-      first = topo_.points.size();
+      first = mesh_.topo.points.size();
       std::vector<std::pair<double, std::size_t>> far;
       for (std::size_t i = 0; i < edges.size(); ++i)
         if (off[i] > bend_share * params_.tolerance) far.emplace_back(-off[i], i);
@@ -668,33 +479,27 @@ class Cutter {
       for (const auto& [negative, i] : far) {
         const auto [a, b] = edges[i];
         const Vec<3> x = 0.5 * (at(a) + at(b));
-        const auto y = hold(edges[i]).settle(partition_, x, on_);
+        const auto y = mesh_.hold(edges[i]).settle(partition_, x, mesh_.on);
         if (!y || (*y - x).norm() > 0.3 * (at(b) - at(a)).norm()) continue;
-        split_at(edges[i], *y, std::array{0.5, 0.5});
+        mesh_.split_at(edges[i], *y, std::array{0.5, 0.5});
       }
-      if (topo_.points.size() == first) break;
+      if (mesh_.topo.points.size() == first) break;
     }
     return true;
   }
 
+  const Vec<3>& at(NodeId n) const { return mesh_.at(n); }
+
   const Partition<3>& partition_;
   const CutParams& params_;
-  const MetricFunction<3>& metric_at_;
   const std::vector<Element>& initial_;
   ElementLocator<3> locator_;
-  double on_;         ///< mm: what is this near to a border lies on it
-  double exact_ = 0;  ///< mm: points this near are one
-  MetricCarrier<3> carrier_{MetricMean::size};
+  std::size_t old_nodes_;
+  CutTopology mesh_;
   int zone_ = 0;
-  std::int32_t first_interface_ = 0;  ///< label of the interface of zone 0; below: facets
-  Topology<3> topo_;
-  std::vector<Packed<3>> metric_;  ///< [node]
-  std::vector<double> phi_;        ///< [node] of the zone that is being cut
-  std::vector<char> locked_;       ///< [node] on a corner or feature edge
-  std::vector<NodeId> nodes_;      ///< of the background
-  std::vector<std::int32_t> star_;
-  std::set<std::array<NodeId, 2>> features_;
-  std::size_t snapped_ = 0, lost_ = 0, old_nodes_ = 0;
+  std::vector<double> phi_;    ///< [node] of the zone that is being cut
+  std::vector<NodeId> nodes_;  ///< of the background
+  std::size_t lost_ = 0;
 };
 
 }  // namespace

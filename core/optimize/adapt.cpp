@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/parallel.h"
+#include "core/mesh/adjacency.h"
 #include "core/mesh/interfaces.h"
 #include "core/mesh/quality.h"
 #include "core/optimize/memory_need.h"
@@ -274,6 +275,36 @@ class Adaption {
   std::atomic<bool> overfull_ = false;
 };
 
+/// Drops listed interfaces that have become none: where a thin part of a body vanished, its two
+/// sides lie on each other within the other body.
+template <int D>
+void drop_false_interfaces(SimplexMesh<D>& mesh) {
+  using Facet = typename SimplexMesh<D>::Facet;
+  std::vector<Facet> real;
+  const auto uses = face_uses<D>(mesh.elements, mesh.points.size());
+  for_each_face<D>(uses, [&](std::size_t first, std::size_t last) {
+    if (last - first == 1 ||
+        mesh.element_body[uses[first].element] != mesh.element_body[uses[first + 1].element])
+      real.push_back(uses[first].nodes);
+  });
+  std::vector<char> seen(real.size(), 0);
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    Facet nodes = mesh.facets[f];
+    std::sort(nodes.begin(), nodes.end());
+    const auto at = std::lower_bound(real.begin(), real.end(), nodes) - real.begin();
+    const auto i = static_cast<std::size_t>(at);
+    if (i == real.size() || real[i] != nodes || seen[i]) continue;
+    seen[i] = 1;
+    mesh.facets[kept] = mesh.facets[f];
+    mesh.facet_group[kept] = mesh.facet_group[f];
+    mesh.facet_face[kept++] = mesh.facet_face[f];
+  }
+  mesh.facets.resize(kept);
+  mesh.facet_group.resize(kept);
+  mesh.facet_face.resize(kept);
+}
+
 /// Elements a node in a mesh of good elements.
 template <int D>
 constexpr double elements_a_node = D == 2   ? 2
@@ -371,6 +402,7 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
   if (report.cancelled) report.settled = false;
   progress.report(1);
   Adapted<D> out = adaption.result(mesh);
+  if (given > outer) drop_false_interfaces(out.mesh);
   if (params.treat_blocking) out.report.blocking = blocking_faces(out.mesh).size();
   return out;
 }

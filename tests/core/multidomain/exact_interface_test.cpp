@@ -316,7 +316,7 @@ TEST(ExactInterface, DoesNotDependOnThreads) {
   ExactParams one, two;
   one.adapt.threads = 1;
   two.adapt.threads = 2;
-  const Exact a = made_exact(touching_boxes(), one), b = made_exact(touching_boxes(), two);
+  const Exact a = made_exact(overlapping_balls(), one), b = made_exact(overlapping_balls(), two);
   EXPECT_EQ(a.mesh.points, b.mesh.points);
   EXPECT_EQ(a.mesh.elements, b.mesh.elements);
   EXPECT_EQ(a.mesh.element_body, b.mesh.element_body);

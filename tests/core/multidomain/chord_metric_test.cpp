@@ -1,0 +1,65 @@
+#include "core/multidomain/chord_metric.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/soup.h"
+#include "tests/support/random_metric.h"
+#include "tests/support/sample_surfaces.h"
+
+namespace lamella {
+namespace {
+
+constexpr double tolerance = 1e-3, large = 0.5;
+
+/// The middle of a chord of length h lies h^2 kappa / 8 deep: half of the tolerance.
+double chord(double radius) { return std::sqrt(8 * 0.5 * tolerance * radius); }
+
+TEST(ChordMetric, ChordsOfABallKeepTheTolerance) {
+  const double r = 0.7;
+  const Partition<3> ball({{"ball", ball_zone<3>(Vec<3>::Zero(), r)}});
+  std::mt19937 rng(1);
+  for (int i = 0; i < 50; ++i) {
+    const Vec<3> n = test::random_vector<3>(rng).normalized();
+    const Metric<3> m = with_chords(isotropic_metric<3>(large), ball, r * n, tolerance);
+    const Vec<3> t = n.unitOrthogonal(), b = n.cross(t);
+    for (const Vec<3>& along : {t, b, Vec<3>((t + b).normalized())})
+      EXPECT_NEAR(1 / metric_length<3>(along, m), chord(r), 0.02 * chord(r));
+    EXPECT_NEAR(1 / metric_length<3>(n, m), large, 1e-6);
+  }
+}
+
+TEST(ChordMetric, ACylinderIsCurvedAroundOnly) {
+  const double r = 0.5;
+  const Vec<3> axis = Vec<3>(1, 2, -1).normalized();
+  const Partition<3> rod({{"rod", cylinder_zone(-3 * axis, 3 * axis, r)}});
+  const Vec<3> n = axis.unitOrthogonal(), around = axis.cross(n);
+  const Metric<3> m = with_chords(isotropic_metric<3>(large), rod, r * n, tolerance);
+  EXPECT_NEAR(1 / metric_length<3>(around, m), chord(r), 0.02 * chord(r));
+  EXPECT_NEAR(1 / metric_length<3>(axis, m), large, 1e-3 * large);
+}
+
+TEST(ChordMetric, FlatSidesAndSharpEdgesAskForNothing) {
+  auto s = testing::box_surface({1, 2, 1});
+  find_features(s, 0.6);
+  const Partition<3> box({{"box", surface_zone<3>(s)}});
+  std::mt19937 rng(2);
+  const Metric<3> given = isotropic_metric<3>(large);
+  for (int i = 0; i < 500; ++i) {
+    const Vec<3> x = Vec<3>(0.5, 1, 0.5) + 1.2 * test::random_vector<3>(rng);
+    EXPECT_LT((with_chords(given, box, x, tolerance) - given).norm(), 1e-9 * given.norm())
+        << x.transpose();
+  }
+}
+
+TEST(ChordMetric, SizesGrowWithTheDistance) {
+  const double r = 0.7, d = 0.05;
+  const Partition<3> ball({{"ball", ball_zone<3>(Vec<3>::Zero(), r)}});
+  for (double side : {-1.0, 1.0}) {
+    const Vec<3> x = (r + side * d) * Vec<3>::UnitX();
+    const Metric<3> m = with_chords(isotropic_metric<3>(large), ball, x, tolerance, 0.5);
+    EXPECT_NEAR(1 / metric_length<3>(Vec<3>::UnitY(), m), chord(r) + 0.5 * d, 0.02 * chord(r));
+  }
+}
+
+}  // namespace
+}  // namespace lamella
