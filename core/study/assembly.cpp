@@ -7,9 +7,15 @@
 #include "core/base/parallel.h"
 #include "core/geometry/soup.h"
 #include "core/geometry/triangles.h"
+#include "core/mesh/interfaces.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/mesh/validate.h"
+#include "core/metric/intersect.h"
+#include "core/multidomain/chord_metric.h"
+#include "core/multidomain/exact_interface.h"
 #include "core/multidomain/interface_metric.h"
+#include "core/natural/boundary_distance.h"
+#include "core/natural/layer_correction.h"
 #include "core/natural/medial_ball.h"
 #include "core/natural/natural_metric.h"
 #include "core/optimize/adapt.h"
@@ -34,8 +40,12 @@ constexpr double kAskedScale = kAskedFiner * kAskedFiner;
 constexpr double kSettledNodes = 0.03, kSettledError = 0.03;  // relative changes
 constexpr int kReportDepth = 6;       // bisections for the figures that are reported
 constexpr int kCells = 6;             // of the first mesh of a box, along its longest side
-constexpr double kOfLayer = 0.25;     // size across a border, of the thinnest layer
+constexpr double kOfLayer = 0.25;     // size across a fuzzy border, of the thinnest layer
+constexpr double kOfLayerCut = 0.5;   // the same of a border that the mesh is cut along
 constexpr double kSlope = 1;          // growth of that size with the distance
+constexpr double kGrowth = 0.7;       // of a neighbor's sizes with the distance in its metric: ln 2
+constexpr double kChordShare = 0.6;   // of the tolerance, that chords of borders are asked for
+constexpr int kRoundsToCut = 2;       // adaptions to fuzzy borders before the mesh is cut
 constexpr int kBackgroundLayers = 2;  // unless the study says more
 
 /// A body or what is around all of them: a region of the partition.
@@ -44,6 +54,7 @@ struct Member {
   NaturalParams natural;
   std::unique_ptr<const NaturalDetector> detector;
   SizingField sizing;
+  LayerCorrection correction;
   double interface_size = 0;
 };
 
@@ -83,11 +94,12 @@ class AssemblyLoop {
 
   Result<void> step(const Progress& progress) {
     const auto start = Clock::now();
-    AdaptParams params;
-    params.chord_tolerance = chord_tolerance_;
-    params.seed = options_.seed;
-    params.threads = options_.threads;
-    params.memory_limit = options_.memory;
+    if (exact_) return step_exact(start, progress);
+    // The last of the rounds before the cut, or the only one there is.
+    const int rounds = std::min(kRoundsToCut, options_.iterations);
+    const bool cut =
+        options_.interfaces == Interfaces::exact && static_cast<int>(records_.size()) >= rounds;
+    const AdaptParams params = adapt_params();
     MetricFunction<3> asked_at;
     if (options_.capture == Capture::distance)
       asked_at = [captured = captured_at()](const Vec<3>& x) -> Metric<3> {
@@ -97,25 +109,54 @@ class AssemblyLoop {
     for (std::size_t i = 1; i < asked.size(); ++i) asked[i] *= kAskedScale;
     Result<Adapted<3>> adapted =
         adapt<3>(current_.mesh, asked, domain_surface_ ? &*domain_surface_ : nullptr, params,
-                 progress.portion(0, 0.7), asked_at);
+                 progress.portion(0, cut ? 0.4 : 0.7), asked_at);
     if (!adapted) return adapted.error();
     if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return valid.error();
-    return accept(std::move(adapted->mesh), start, progress.portion(0.7, 1));
+    if (!cut) return accept(std::move(adapted->mesh), start, progress.portion(0.7, 1));
+    ExactParams exact;
+    exact.adapt = params;
+    std::vector<ReferenceSurface<3>> surfaces;
+    for (std::size_t m = 0; m + 1 < members_.size(); ++m)
+      surfaces.push_back(members_[m].part.surface);
+    Result<Exact> made =
+        exact_interfaces(adapted->mesh, adapted->metric, *partition_, surfaces, exact,
+                         progress.portion(0.4, 0.75, "cutting along the borders"), natural_alone());
+    if (!made) return made.error();
+    if (made->adapt.cancelled) return cancelled_error();
+    SimplexMesh<3> mesh = std::move(made->mesh);
+    if (std::holds_alternative<DomainBodies>(study_.domain->shape)) {
+      mesh = drop_body<3>(mesh, partition_->background());
+      if (Result<void> valid = validate<3>(mesh); !valid) return valid.error();
+    }
+    if (made->lost > 0)
+      outcomes_.front().notes.push_back(std::to_string(made->lost) +
+                                        " pieces of sharp edges could not be followed.");
+    exact_ = std::make_unique<const ReferenceSurface<3>>(std::move(made->surface));
+    return accept(std::move(mesh), start, progress.portion(0.75, 1));
   }
 
   const MeshState& current() const { return current_; }
   const IterationRecord& last_record() const { return records_.back(); }
   bool settled() const { return settled_; }
   bool converged() const {
-    return settled_ &&
-           std::all_of(outcomes_.begin(), outcomes_.end() - 1, [](const BodyOutcome& b) {
-             return b.layers.places == 0 || b.layers.mean >= b.layers_asked;
+    return settled_ && std::all_of(outcomes_.begin(), outcomes_.end(), [&](const BodyOutcome& b) {
+             return b.name == members_.back().part.name || b.layers.places == 0 ||
+                    b.layers.mean >= b.layers_asked;
            });
   }
 
   /// Closes the books, the figures with a finer division at the borders than in the loop.
-  std::vector<BodyOutcome> finish(const Progress& progress) {
+  Result<std::vector<BodyOutcome>> finish(const Progress& progress) {
+    for (std::size_t m = 0; exact_ && m + 1 < members_.size(); ++m) {
+      const SimplexMesh<3> body = extract_body(current_.mesh, static_cast<std::int32_t>(m));
+      if (body.elements.empty()) continue;
+      Result<BoundaryDistance> distance =
+          boundary_distance(body, members_[m].part.surface, options_.threads, progress);
+      if (!distance) return distance.error();
+      outcomes_[m].boundary_distance = *distance;
+    }
+    if (exact_) return outcomes_;
     FillingParams params;
     params.depth = kReportDepth;
     params.threads = options_.threads;
@@ -125,6 +166,33 @@ class AssemblyLoop {
   }
 
  private:
+  AdaptParams adapt_params() const {
+    AdaptParams params;
+    params.chord_tolerance = chord_tolerance_;
+    params.seed = options_.seed;
+    params.threads = options_.threads;
+    params.memory_limit = options_.memory;
+    return params;
+  }
+
+  /// What is asked where the faces of the mesh are the borders: edges along them are chords.
+  Metric<3> exact_at(const Vec<3>& x) const {
+    return with_chords(natural_at(x), *partition_, x, kChordShare * chord_tolerance_, kGrowth);
+  }
+  MetricFunction<3> natural_alone() const {
+    return [this](const Vec<3>& x) -> Metric<3> { return exact_at(x) * kAskedScale; };
+  }
+
+  Result<void> step_exact(Clock::time_point start, const Progress& progress) {
+    Result<Adapted<3>> adapted =
+        adapt<3>(current_.mesh, current_.metric, exact_.get(), adapt_params(),
+                 progress.portion(0, 0.7), natural_alone());
+    if (!adapted) return adapted.error();
+    if (adapted->report.cancelled) return cancelled_error();
+    if (Result<void> valid = validate<3>(adapted->mesh); !valid) return valid.error();
+    return accept(std::move(adapted->mesh), start, progress.portion(0.7, 1));
+  }
+
   /// Regions and the first mesh of the domain.
   Result<SimplexMesh<3>> lay_out(const std::vector<Part>& parts,
                                  const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
@@ -197,7 +265,9 @@ class AssemblyLoop {
     Result<SizingField> sizing = SizingField::make(sizing_of(study_, member.part.name), surface);
     if (!sizing) return sizing.error();
     member.sizing = std::move(*sizing);
-    member.interface_size = settings.interface_size.value_or(kOfLayer * thinnest_layer(member));
+    member.interface_size = settings.interface_size.value_or(
+        (options_.interfaces == Interfaces::exact ? kOfLayerCut : kOfLayer) *
+        thinnest_layer(member));
     BodyOutcome outcome;
     outcome.name = member.part.name;
     outcome.layers_asked = member.natural.layers;
@@ -290,9 +360,35 @@ class AssemblyLoop {
     return std::move(first->mesh);
   }
 
+  Metric<3> natural_in(int region, const Vec<3>& x) const {
+    const Member& member = members_[region];
+    return member.sizing.apply(
+        x, member.correction.apply(x, member.detector->at(x, member.natural).metric,
+                                   member.natural.h_min));
+  }
+
+  /// The natural metric of the region that x lies in, refined towards the sizes beyond its borders
+  /// as they come near: M_b / (1 + l ln 2)^2 at the distance l in the metric of the neighbor.
   Metric<3> natural_at(const Vec<3>& x) const {
-    const Member& member = members_[partition_->region_of(x)];
-    return member.sizing.apply(x, member.detector->at(x, member.natural).metric);
+    const int own = partition_->region_of(x);
+    Metric<3> metric = natural_in(own, x);
+    const double beside = 0.1 * chord_tolerance_;
+    std::vector<Border<3>> near;
+    partition_->borders(x, 3 * sizes<3>(metric)[0] / kGrowth, near);
+    for (const auto& [zone, border] : near) {
+      const Vec<3> there = x + (border.distance + beside) * border.normal;
+      const int other = partition_->region_of(there);
+      if (other == own || (dropped() && other == partition_->background())) continue;
+      const Metric<3> beyond = natural_in(other, there);
+      const double length = border.distance * std::sqrt(border.normal.dot(beyond * border.normal));
+      metric = intersect<3>(metric, beyond / std::pow(1 + kGrowth * length, 2));
+    }
+    return metric;
+  }
+
+  /// Nothing but the bodies stays.
+  bool dropped() const {
+    return exact_ && std::holds_alternative<DomainBodies>(study_.domain->shape);
   }
 
   std::vector<double> interface_sizes() const {
@@ -310,6 +406,7 @@ class AssemblyLoop {
   Result<void> accept(SimplexMesh<3> mesh, Clock::time_point start, const Progress& progress) {
     MeshState next;
     next.mesh = std::move(mesh);
+    if (exact_) return accept_exact(std::move(next), start, progress);
     FillingParams filling_params;
     filling_params.threads = options_.threads;
     Result<Filling> filling =
@@ -327,21 +424,83 @@ class AssemblyLoop {
     record->mixed = filling->mixed_count();
     for (const BodyOutcome& body : outcomes_)
       record->interface_error = std::max(record->interface_error, body.interface_error);
-    record->iteration = static_cast<int>(records_.size());
-    sum_layers(*record);
-    record->seconds = seconds_since(start);
-    if (record->iteration > 1) {
-      const IterationRecord& before = records_.back();
-      const auto change = [](double a, double b) { return std::abs(a - b) / std::max(b, 1e-300); };
-      settled_ = change(static_cast<double>(record->nodes), static_cast<double>(before.nodes)) <
-                     kSettledNodes &&
-                 change(record->interface_error, before.interface_error) < kSettledError;
-    }
     next.filling = std::make_shared<const Filling>(std::move(*filling));
-    current_ = std::move(next);
-    records_.push_back(*record);
-    for (BodyOutcome& body : outcomes_) body.records.push_back(*record);
+    keep(std::move(next), *record, start);
     return {};
+  }
+
+  /// The same where every element belongs to one body.
+  Result<void> accept_exact(MeshState next, Clock::time_point start, const Progress& progress) {
+    next.metric.assign(next.mesh.points.size(), Metric<3>::Identity());
+    next.thickness.assign(next.mesh.points.size(), 0);
+    const auto at_node = [&](std::size_t i) {
+      const Vec<3>& x = next.mesh.points[i + 1];
+      const Member& member = members_[partition_->region_of(x)];
+      next.metric[i + 1] = exact_at(x);
+      next.thickness[i + 1] = member.detector->at(x, member.natural).thickness;
+    };
+    if (!parallel_each(next.mesh.node_count(), options_.threads, progress.portion(0, 0.3), at_node))
+      return cancelled_error();
+    Result<IterationRecord> record = measure(next, progress.portion(0.3, 0.4));
+    if (!record) return record.error();
+    next.layers.assign(next.mesh.points.size(), std::numeric_limits<double>::quiet_NaN());
+    const std::size_t bodies = dropped() ? members_.size() - 1 : members_.size();
+    outcomes_.resize(bodies);
+    for (std::size_t m = 0; m < bodies; ++m) {
+      const double from = 0.4 + 0.6 * static_cast<double>(m) / static_cast<double>(bodies);
+      const double to = 0.4 + 0.6 * static_cast<double>(m + 1) / static_cast<double>(bodies);
+      if (Result<void> measured = measure_exact(m, next, progress.portion(from, to)); !measured)
+        return measured;
+    }
+    keep(std::move(next), *record, start);
+    return {};
+  }
+
+  /// Volume, layers and what is learnt from them, of the elements of one body.
+  Result<void> measure_exact(std::size_t m, MeshState& state, const Progress& progress) {
+    BodyOutcome& outcome = outcomes_[m];
+    Member& member = members_[m];
+    std::vector<NodeId> old_id;
+    const SimplexMesh<3> body = extract_body(state.mesh, static_cast<std::int32_t>(m), &old_id);
+    outcome.interface_error = 0;
+    outcome.mesh_volume = 0;
+    for (const auto& e : body.elements) outcome.mesh_volume += signed_measure<3>(body.corners(e));
+    if (body.elements.empty()) return {};
+    Result<Layers> layers = measure_layers(body, member.part.surface, outcome.layers_asked,
+                                           options_.threads, progress.portion(0, 0.7));
+    if (!layers) return layers.error();
+    outcome.layers = layers->stats;
+    outcome.below = layers->below;
+    state.below.insert(state.below.end(), layers->below.begin(), layers->below.end());
+    for (std::size_t i = 1; i < old_id.size(); ++i)
+      if (std::isfinite(layers->at_node[i])) state.layers[old_id[i]] = layers->at_node[i];
+    Result<LayerCorrection> learnt = LayerCorrection::learn(
+        member.correction, body, layers->at_node, kWantedLayers * outcome.layers_asked,
+        options_.threads, progress.portion(0.7, 1));
+    if (!learnt) return learnt.error();
+    member.correction = std::move(*learnt);
+    return {};
+  }
+
+  void keep(MeshState next, IterationRecord record, Clock::time_point start) {
+    record.iteration = static_cast<int>(records_.size());
+    sum_layers(record);
+    record.seconds = seconds_since(start);
+    const auto change = [](double a, double b) { return std::abs(a - b) / std::max(b, 1e-300); };
+    settled_ = false;
+    // Fuzzy and exact interfaces cannot be compared.
+    if (record.iteration > 1 && (record.mixed > 0) == (records_.back().mixed > 0)) {
+      const IterationRecord& before = records_.back();
+      const double nodes =
+          change(static_cast<double>(record.nodes), static_cast<double>(before.nodes));
+      const double error =
+          record.mixed > 0 ? change(record.interface_error, before.interface_error) : 0;
+      settled_ = nodes < kSettledNodes && error < kSettledError &&
+                 (exact_ != nullptr) == (options_.interfaces == Interfaces::exact);
+    }
+    current_ = std::move(next);
+    records_.push_back(record);
+    for (BodyOutcome& body : outcomes_) body.records.push_back(record);
   }
 
   /// The metric asked and the wall thickness at the nodes.
@@ -403,7 +562,7 @@ class AssemblyLoop {
     double places = 0;
     bool first = true;
     LayerStats& all = record.layers;
-    for (std::size_t m = 0; m + 1 < outcomes_.size(); ++m) {
+    for (std::size_t m = 0; m + 1 < members_.size(); ++m) {
       const LayerStats& of = outcomes_[m].layers;
       if (of.places == 0) continue;
       const auto p = static_cast<double>(of.places);
@@ -427,6 +586,8 @@ class AssemblyLoop {
   std::vector<Member> members_;  // [region], what is around the bodies last
   std::unique_ptr<const Partition<3>> partition_;
   std::optional<ReferenceSurface<3>> domain_surface_;
+  /// What holds the boundary and the interfaces, once the mesh was cut.
+  std::unique_ptr<const ReferenceSurface<3>> exact_;
   double chord_tolerance_ = 0;
   std::string first_mesh_by_;
   MeshState current_;
@@ -465,7 +626,13 @@ Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
     if (stepped) tell();
     if (study.options.until_settled && loop.settled()) break;
   }
-  outcome.bodies = loop.finish(outcome.cancelled ? Progress{} : progress.portion(0.97, 1));
+  Result<std::vector<BodyOutcome>> closed =
+      loop.finish(outcome.cancelled ? Progress{} : progress.portion(0.97, 1));
+  if (!closed) {
+    outcome.cancelled = true;
+    closed = loop.finish(Progress{});
+  }
+  outcome.bodies = std::move(*closed);
   outcome.converged = !outcome.cancelled && loop.converged();
   outcome.seconds = seconds_since(start);
   progress.report(1);
