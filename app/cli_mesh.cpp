@@ -71,6 +71,12 @@ Result<Request> request_of(const MeshCommand& c) {
   }
   if (!request.study.domain && (c.interfaces || c.interface_size || c.capture))
     return Error{Code::usage, "Interfaces are of one mesh of all bodies.", "Add a --domain."};
+  if (!c.drop.empty()) {
+    if (!request.study.domain)
+      return Error{Code::usage, "Bodies are dropped from one mesh of all of them.",
+                   "Add a --domain."};
+    request.study.dropped = c.drop;
+  }
   if (c.interfaces) o.interfaces = *c.interfaces == "fuzzy" ? Interfaces::fuzzy : Interfaces::exact;
   if (c.capture) o.capture = *c.capture == "gradient" ? Capture::gradient : Capture::distance;
   Result<std::vector<SizingObject>> sizing = sizing_of(c);

@@ -232,6 +232,15 @@ void add_case(CLI::App* e, CaseCommand& made) {
   number("--angle", made.angle, "X", "Tilted plate: angle of its normal to the x axis [0.61]");
 }
 
+void add_boundary_layers(CLI::App* m, MeshCommand& mesh) {
+  m->add_option("--boundary-layer", mesh.boundary_layers,
+                "Boundary layer of a thickness, mm, with N elements across: THICKNESS,N for all "
+                "walls, THICKNESS,N,BODY:FACE,.. for faces by number or name, and "
+                "THICKNESS,N,BODY:-FACE,.. for all but these; may be repeated")
+      ->option_text("TEXT")
+      ->allow_extra_args(false);
+}
+
 void add_groups(CLI::App* m, MeshCommand& mesh) {
   m->add_option("--group", mesh.groups,
                 "Boundary group of faces: NAME=BODY:FACE,.. by number or name (info --faces lists "
@@ -256,6 +265,10 @@ void add_domain(CLI::App* m, MeshCommand& mesh) {
                 "Size across borders, mm [a quarter of the thinnest layer]")
       ->option_text("X")
       ->check(CLI::PositiveNumber);
+  m->add_option("--drop", mesh.drop,
+                "Body of an exact mesh that is not handed out, or \"background\"; may be repeated")
+      ->option_text("NAME")
+      ->allow_extra_args(false);
   m->add_option("--capture", mesh.capture,
                 "What draws the mesh together at fuzzy borders: their distance, or the gradient of "
                 "the filling ratio [distance]")
@@ -344,6 +357,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->option_text("X")
       ->check(CLI::Range(0.0, 1.0));
   add_sizing(m, mesh);
+  add_boundary_layers(m, mesh);
   add_groups(m, mesh);
   add_unit(m, mesh.unit);
   add_repair(m, mesh.repair, mesh.wrap_spacing);

@@ -32,6 +32,7 @@ struct MeshCommand {
   std::optional<std::string> detector;
   std::optional<std::string> domain, interfaces, capture;
   std::optional<double> interface_size;
+  std::vector<std::string> drop, boundary_layers;
   std::string report;
   bool json = false;
 };

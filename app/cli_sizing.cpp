@@ -82,6 +82,43 @@ Result<SizingObject> on_face(const std::string& text, const SizeCorrection& aske
                       correction};
 }
 
+/// "0.5,3", "0.5,3,part:2,lid", "0.5,3,part:-2,-lid".
+Result<SizingObject> boundary_layer(const std::string& text) {
+  const Error misread{
+      Code::usage, "--boundary-layer " + text + " is not understood.",
+      "Write it as THICKNESS,N or THICKNESS,N,BODY:FACE,.., a minus before each face "
+      "that shall have none."};
+  const std::size_t first = text.find(','), second = text.find(',', first + 1);
+  if (first == text.npos) return misread;
+  const auto thickness = read_number<double>(std::string_view(text).substr(0, first));
+  const auto layers =
+      read_number<int>(std::string_view(text).substr(first + 1, second - first - 1));
+  if (!thickness || !layers) return misread;
+  SizingObject object{"boundary layer " + text, "", WholeBody{},
+                      BoundaryLayer{*thickness, *layers}};
+  if (second == text.npos) return object;
+  // Names of bodies may have a colon too.
+  const std::size_t colon = text.rfind(':');
+  if (colon == text.npos || colon < second) return misread;
+  object.body = text.substr(second + 1, colon - second - 1);
+  FacesShape faces;
+  faces.others = text[colon + 1] == '-';
+  for (std::size_t begin = colon + 1; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    std::string face = text.substr(begin, end - begin);
+    if (faces.others != (!face.empty() && face[0] == '-')) return misread;
+    if (faces.others) face.erase(0, 1);
+    if (face.empty()) return misread;
+    if (const auto id = read_number<std::int32_t>(face))
+      faces.ids.push_back(*id);
+    else
+      faces.names.push_back(face);
+    begin = end + 1;
+  }
+  object.shape = faces;
+  return object;
+}
+
 }  // namespace
 
 Result<std::vector<SizingObject>> sizing_of(const MeshCommand& c) {
@@ -105,6 +142,7 @@ Result<std::vector<SizingObject>> sizing_of(const MeshCommand& c) {
   if (auto error = add(c.size_cylinders, numbers(kCylinder))) return *error;
   if (auto error = add(c.size_faces, [&](const std::string& t) { return on_face(t, asked); }))
     return *error;
+  if (auto error = add(c.boundary_layers, boundary_layer)) return *error;
   return objects;
 }
 

@@ -340,6 +340,33 @@ Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface
   return layers;
 }
 
+Result<Layers> measure_boundary_layer(const SimplexMesh<3>& mesh,
+                                      const std::vector<std::int32_t>& faces, double thickness,
+                                      int asked, int threads, const Progress& progress) {
+  if (asked < 1 || !(thickness > 0))
+    return Error{Code::usage, "A boundary layer needs a thickness and one element at least.", ""};
+  const Neighbors neighbors(mesh);
+  std::vector<Place> places(mesh.facets.size());
+  const auto measure_at = [&](std::size_t f) {
+    if (!faces.empty() && std::count(faces.begin(), faces.end(), mesh.facet_face[f]) == 0) return;
+    const auto corners = mesh.corners(mesh.facets[f]);
+    const Vec<3> n = facet_normal<3>(corners);
+    Place& place = places[f];
+    place.at = (corners[0] + corners[1] + corners[2]) / 3;
+    place.corners = mesh.facets[f];
+    place.area = 0.5 * n.norm();
+    const auto [element, entered] = neighbors.owner[f];
+    if (element < 0 || !(place.area > 0)) return;
+    Walk w = walk(mesh, neighbors, element, entered, place.at, -n.normalized(), thickness);
+    place.opposite = w.whole;
+    place.layers = w.layers;
+    place.crossed = std::move(w.crossed);
+  };
+  if (!parallel_each(places.size(), threads, progress, measure_at)) return cancelled_error();
+  std::vector<std::int32_t> counted;
+  return layers_of(mesh, places, asked, mesh.points.size(), true, counted);
+}
+
 Result<Layers> measure_layers_within(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
                                      int asked, int threads, const Progress& progress) {
   if (asked < 1) return Error{Code::usage, "The number of layers asked must be at least 1.", ""};

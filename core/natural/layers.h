@@ -39,6 +39,13 @@ struct Layers {
 Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
                               int asked, int threads = 0, const Progress& progress = {});
 
+/// The same through a boundary layer (7.3.2): from the facets of the given CAD faces (all when there
+/// are none) for `thickness` mm along the inward normal, whatever lies beyond. Where the body ends
+/// before, nothing is measured.
+Result<Layers> measure_boundary_layer(const SimplexMesh<3>& mesh,
+                                      const std::vector<std::int32_t>& faces, double thickness,
+                                      int asked, int threads = 0, const Progress& progress = {});
+
 /// The same for a body that lies anywhere in the mesh, its surface crossing elements: from points
 /// on `surface`, no farther apart than a fiftieth of its diagonal, to the wall of `surface`
 /// beyond. What lies outside of the mesh does not count; `at_facet` stays empty.

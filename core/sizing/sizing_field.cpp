@@ -14,6 +14,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A zone that ends on a wall holds on the wall: relative to the extents of the shape.
 constexpr double kRounding = 1e-9;
 
+/// The best elements have a little less than a layer each: asked for by this much finer, the poor
+/// places of a boundary layer have the layers too.
+constexpr double kFinerLayers = 1.2;
+
 template <class... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;
@@ -107,14 +111,21 @@ struct Zone {
   }
 };
 
+/// Sizes across the walls.
+struct Layer {
+  std::shared_ptr<const Locator<3>> walls;
+  double thickness = 0, size = 0, slope = 0;
+};
+
 struct Placement {
   Placed place;
-  std::variant<Correction, Zone> asks;
+  std::variant<Correction, Zone, Layer> asks;
 
   /// It acts on the natural metric instead of being intersected with it.
   bool rules() const {
     if (const auto* zone = std::get_if<Zone>(&asks)) return zone->replace;
-    return std::get<Correction>(asks).coarsens();
+    if (const auto* correction = std::get_if<Correction>(&asks)) return correction->coarsens();
+    return false;
   }
 };
 
@@ -142,6 +153,23 @@ void rule(const Placement& p, const Vec<3>& x, Metric<3>& metric) {
   if (d < reach) metric *= eigenvalue_from_size(c.factor - d * c.slope / h1);
 }
 
+/// Intersects `metric` with the layer's size across the nearest wall.
+void refine(const Layer& layer, const Box<3>& box, const Vec<3>& x, const Range& range,
+            Metric<3>& metric) {
+  const double reach = layer.thickness + (range.largest - layer.size) / layer.slope;
+  if (!(reach > 0) || distance_to_box(box, x) >= reach) return;
+  const auto near = layer.walls->nearest(x, reach);
+  if (!near) return;
+  const double d = std::sqrt(near->distance2);
+  const Vec<3> wall = layer.walls->normal(near->facet);
+  const Vec<3> across = d > 1e-9 * layer.thickness ? Vec<3>((x - near->point) / d) : wall;
+  // What lies beside the faces, not before them, is none of the layer's.
+  if (std::abs(across.dot(wall)) < 0.7) return;
+  const double h = layer.size + layer.slope * std::max(0.0, d - layer.thickness);
+  const double ratio = across.dot(metric.llt().solve(across)) / (h * h);
+  if (ratio > 1) metric += (1 - 1 / ratio) / (h * h) * across * across.transpose();
+}
+
 /// Intersects `metric` with what one object makes of `base`.
 void refine(const Placement& p, const Vec<3>& x, const Metric<3>& base, const Range& range,
             Metric<3>& metric) {
@@ -149,6 +177,8 @@ void refine(const Placement& p, const Vec<3>& x, const Metric<3>& base, const Ra
     if (p.place.holds(x)) metric = intersect<3>(metric, zone->at(x));
     return;
   }
+  if (const auto* layer = std::get_if<Layer>(&p.asks))
+    return refine(*layer, p.place.box, x, range, metric);
   const auto& c = std::get<Correction>(p.asks);
   const double h0 = c.at_shape(range.smallest);
   const double ends = c.keep_directions ? range.smallest : range.largest;
@@ -170,8 +200,16 @@ class Reader {
   Result<Placement> read(const SizingObject& object) {
     complaint_.reset();
     Placement p;
-    std::visit([&](const auto& shape) { place(shape, p.place); }, object.shape);
-    std::visit([&](const auto& asks) { p.asks = prepared(asks); }, object.asks);
+    const auto* layer = std::get_if<BoundaryLayer>(&object.asks);
+    if (layer) {
+      place_layer(object.shape, p.place);
+      if (!complaint_) p.asks = prepared(*layer, p.place);
+    } else {
+      std::visit([&](const auto& shape) { place(shape, p.place); }, object.shape);
+      std::visit(Overloaded{[&](const BoundaryLayer&) {},
+                            [&](const auto& asks) { p.asks = prepared(asks); }},
+                 object.asks);
+    }
     if (!complaint_) return p;
     complaint_->message = "Sizing object \"" + object.name + "\": " + complaint_->message;
     return *complaint_;
@@ -238,7 +276,7 @@ class Reader {
   void place(const FacesShape& s, Placed& out) {
     want(s.depth >= 0 && std::isfinite(s.depth), "the depth under the faces is negative.",
          "0 is the faces alone.");
-    want(!s.ids.empty() || !s.names.empty(), "it picks no face.", known_faces());
+    want(s.others || !s.ids.empty() || !s.names.empty(), "it picks no face.", known_faces());
     std::vector<char> picked(surface_.faces.size(), 0);
     for (const std::int32_t id : s.ids) {
       const bool known = id >= 0 && static_cast<std::size_t>(id) < picked.size();
@@ -251,6 +289,8 @@ class Reader {
         if (surface_.faces[f].name == name) picked[f] = found = true;
       want(found, "the body has no face called \"" + name + "\".", known_faces());
     }
+    if (s.others)
+      for (char& p : picked) p = !p;
     ReferenceSurface<3> part;
     double area = 0;
     std::vector<std::int32_t> fresh(surface_.points.size(), -1);
@@ -279,6 +319,15 @@ class Reader {
     out.shape = Skin{std::make_shared<const Locator<3>>(part), s.depth};
     measure(std::max(s.depth, 0.5 * std::sqrt(area)), out);
   }
+  /// Faces, or all of them where the object is for the whole body.
+  void place_layer(const SizingShape& shape, Placed& out) {
+    FacesShape walls;
+    walls.others = true;
+    if (const auto* faces = std::get_if<FacesShape>(&shape)) walls = *faces;
+    want(std::holds_alternative<FacesShape>(shape) || std::holds_alternative<WholeBody>(shape),
+         "a boundary layer lies on faces.", "Pick faces, or take the whole body.");
+    place(walls, out);
+  }
   static void measure(double extent, Placed& out) {
     out.extent = extent;
     out.rounding = kRounding * (out.box.hi - out.box.lo).norm();
@@ -301,6 +350,16 @@ class Reader {
     want(c.gradation > 1 && std::isfinite(c.gradation), "the gradation is not above 1.",
          "It is the growth of sizes per unit length: 1.3 is common.");
     return {c.size.value_or(0), c.factor.value_or(0), std::log(c.gradation), c.keep_directions};
+  }
+  Layer prepared(const BoundaryLayer& l, Placed& place) {
+    want(positive(l.thickness), "the thickness of the boundary layer is not positive.",
+         "Give it in mm.");
+    want(l.layers >= 1, "a boundary layer has at least one element across.", "3 is common.");
+    want(l.gradation > 1 && std::isfinite(l.gradation), "the gradation is not above 1.",
+         "It is the growth of sizes beyond the layer per unit length: 1.5 is common.");
+    place.extent = l.thickness / std::max(1, l.layers);
+    return {std::get<Skin>(place.shape).facets, l.thickness,
+            l.thickness / (kFinerLayers * l.layers), std::log(l.gradation)};
   }
   Zone prepared(const AnalyticZone& z) {
     Zone out;
@@ -345,6 +404,19 @@ class Reader {
 };
 
 }  // namespace
+
+std::vector<std::int32_t> picked_faces(const FacesShape& shape,
+                                       const ReferenceSurface<3>& surface) {
+  std::vector<std::int32_t> picked;
+  for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+    const auto id = static_cast<std::int32_t>(f);
+    const bool named =
+        std::count(shape.ids.begin(), shape.ids.end(), id) > 0 ||
+        std::count(shape.names.begin(), shape.names.end(), surface.faces[f].name) > 0;
+    if (named != shape.others) picked.push_back(id);
+  }
+  return picked;
+}
 
 struct SizingField::Impl {
   std::vector<Placement> ruling, refining;

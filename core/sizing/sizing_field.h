@@ -10,6 +10,9 @@
 
 namespace lamella {
 
+/// The CAD faces that the shape picks, rising; those that the surface does not have are left out.
+std::vector<std::int32_t> picked_faces(const FacesShape& shape, const ReferenceSurface<3>& surface);
+
 /// Sizing objects of one body, ready to be asked. Immutable and thread-safe; copies share their
 /// content.
 ///

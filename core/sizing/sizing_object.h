@@ -32,6 +32,7 @@ struct FacesShape {
   std::vector<std::int32_t> ids{};   ///< CAD face ids
   std::vector<std::string> names{};  ///< all faces that have one of these names
   double depth = 0;                  ///< >= 0
+  bool others = false;               ///< all faces but these
 };
 using SizingShape = std::variant<WholeBody, SphereShape, BoxShape, CylinderShape, FacesShape>;
 
@@ -83,12 +84,21 @@ struct AnalyticZone {
   bool replace = false;             ///< instead of the natural metric; else intersected with it
 };
 
+/// Boundary layer (7.3.2) on the faces of the object, or on all walls of the body: `layers`
+/// elements across within `thickness` of them, beyond it growing as a correction does. Along the
+/// wall sizes stay as they are.
+struct BoundaryLayer {
+  double thickness = 0;    ///< mm, > 0
+  int layers = 3;          ///< >= 1
+  double gradation = 1.5;  ///< > 1
+};
+
 /// What the user asks of the mesh size somewhere, on top of the natural metric.
 struct SizingObject {
   std::string name;
   std::string body{};  ///< the part it applies to; empty: all of them
   SizingShape shape;
-  std::variant<SizeCorrection, AnalyticZone> asks;
+  std::variant<SizeCorrection, AnalyticZone, BoundaryLayer> asks;
 };
 
 }  // namespace lamella

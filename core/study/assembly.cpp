@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
 #include "core/base/parallel.h"
 #include "core/geometry/soup.h"
@@ -14,6 +15,7 @@
 #include "core/multidomain/chord_metric.h"
 #include "core/multidomain/exact_interface.h"
 #include "core/multidomain/interface_metric.h"
+#include "core/multidomain/overlap.h"
 #include "core/natural/boundary_distance.h"
 #include "core/natural/layer_correction.h"
 #include "core/natural/medial_ball.h"
@@ -55,6 +57,7 @@ struct Member {
   std::unique_ptr<const NaturalDetector> detector;
   SizingField sizing;
   LayerCorrection correction;
+  std::unique_ptr<const FaceGroups> groups;  ///< null: the study has none on it
   double interface_size = 0;
 };
 
@@ -125,10 +128,12 @@ class AssemblyLoop {
     if (!made) return made.error();
     if (made->adapt.cancelled) return cancelled_error();
     SimplexMesh<3> mesh = std::move(made->mesh);
-    if (std::holds_alternative<DomainBodies>(study_.domain->shape)) {
-      mesh = drop_body<3>(mesh, partition_->background());
-      if (Result<void> valid = validate<3>(mesh); !valid) return valid.error();
-    }
+    for (int region = partition_->background(); region >= 0; --region)
+      if (body_of_[region] < 0) mesh = drop_body<3>(mesh, region);
+    if (mesh.elements.empty())
+      return Error{Code::usage, "Nothing is left of the mesh.", "Drop fewer bodies."};
+    put_in_groups(mesh, made->surface);
+    if (Result<void> valid = validate<3>(mesh); !valid) return valid.error();
     if (made->lost > 0)
       outcomes_.front().notes.push_back(std::to_string(made->lost) +
                                         " pieces of sharp edges could not be followed.");
@@ -149,14 +154,20 @@ class AssemblyLoop {
   /// Closes the books, the figures with a finer division at the borders than in the loop.
   Result<std::vector<BodyOutcome>> finish(const Progress& progress) {
     for (std::size_t m = 0; exact_ && m + 1 < members_.size(); ++m) {
-      const SimplexMesh<3> body = extract_body(current_.mesh, static_cast<std::int32_t>(m));
+      if (body_of_[m] < 0) continue;
+      const SimplexMesh<3> body = extract_body(current_.mesh, body_of_[m]);
       if (body.elements.empty()) continue;
       Result<BoundaryDistance> distance =
           boundary_distance(body, members_[m].part.surface, options_.threads, progress);
       if (!distance) return distance.error();
       outcomes_[m].boundary_distance = *distance;
     }
-    if (exact_) return outcomes_;
+    if (exact_) {
+      std::vector<BodyOutcome> kept;
+      for (std::size_t m = 0; m < outcomes_.size(); ++m)
+        if (body_of_[m] >= 0) kept.push_back(outcomes_[m]);
+      return kept;
+    }
     FillingParams params;
     params.depth = kReportDepth;
     params.threads = options_.threads;
@@ -209,6 +220,12 @@ class AssemblyLoop {
       }
       Member member;
       member.part = part;
+      if (const std::vector<BoundaryGroup> groups = groups_of(study_, part.name); !groups.empty()) {
+        Result<GroupedSurface> grouped = group_faces(groups, part.surface);
+        if (!grouped) return grouped.error();
+        member.part.surface = std::move(grouped->surface);
+        member.groups = std::make_unique<const FaceGroups>(std::move(grouped->groups));
+      }
       members_.push_back(std::move(member));
       regions.push_back({part.name, surface_zone<3>(part.surface)});
     }
@@ -251,7 +268,42 @@ class AssemblyLoop {
     partition_ = std::make_unique<Partition<3>>(std::move(regions), background);
     for (Member& member : members_)
       if (Result<void> ready = prepare(member); !ready) return ready.error();
+    if (Result<void> chosen = choose_bodies(); !chosen) return chosen.error();
+    if (Result<void> told = tell_overlaps(*hull, progress); !told) return told.error();
     return first;
+  }
+
+  /// Overlaps and gaps go to the notes; of what two bodies share the first keeps the volume.
+  Result<void> tell_overlaps(const StudyZone& hull, const Progress& progress) {
+    OverlapOptions options;
+    options.threads = options_.threads;
+    options.contact = chord_tolerance_;
+    options.gap_width = 2 * chord_tolerance_;
+    options.within = make_zone(hull, study_.zones)->box();
+    if (domain_surface_) {
+      options.within = Box<3>{};
+      for (const Vec<3>& p : domain_surface_->points) options.within->add(p);
+    }
+    Result<OverlapReport> report = find_overlaps(*partition_, options, progress);
+    if (!report) return report.error();
+    const auto number = [](double x) {
+      char text[32];
+      std::snprintf(text, sizeof text, "%.4g", x);
+      return std::string(text);
+    };
+    for (const Overlap& o : report->overlaps) {
+      outcomes_[o.second].cad_volume -= o.volume;
+      outcomes_[o.second].notes.push_back("Overlaps \"" + outcomes_[o.first].name + "\" by " +
+                                          number(o.volume) + " mm3, up to " + number(o.depth) +
+                                          " mm deep at " + place_text(o.place) +
+                                          " mm, which belongs to the latter.");
+      outcomes_.back().cad_volume += o.volume;
+    }
+    for (const Gap& g : report->gaps)
+      outcomes_[g.first].notes.push_back("A gap of " + number(g.volume) + " mm3 towards \"" +
+                                         outcomes_[g.second].name + "\", " + number(g.least_width) +
+                                         " mm wide at " + place_text(g.place) + " mm.");
+    return {};
   }
 
   /// Detector, sizes by hand and size across borders of a member, and its entry in the books.
@@ -378,7 +430,7 @@ class AssemblyLoop {
     for (const auto& [zone, border] : near) {
       const Vec<3> there = x + (border.distance + beside) * border.normal;
       const int other = partition_->region_of(there);
-      if (other == own || (dropped() && other == partition_->background())) continue;
+      if (other == own || (exact_ && body_of_[other] < 0)) continue;
       const Metric<3> beyond = natural_in(other, there);
       const double length = border.distance * std::sqrt(border.normal.dot(beyond * border.normal));
       metric = intersect<3>(metric, beyond / std::pow(1 + kGrowth * length, 2));
@@ -386,9 +438,59 @@ class AssemblyLoop {
     return metric;
   }
 
-  /// Nothing but the bodies stays.
-  bool dropped() const {
-    return exact_ && std::holds_alternative<DomainBodies>(study_.domain->shape);
+  /// Which regions stay, numbered anew. Errors: usage (an unknown name).
+  Result<void> choose_bodies() {
+    body_of_.assign(members_.size(), 0);
+    std::vector<std::string> dropped = study_.dropped;
+    if (std::holds_alternative<DomainBodies>(study_.domain->shape))
+      dropped.push_back(members_.back().part.name);
+    for (const std::string& name : dropped) {
+      const auto it = std::find_if(members_.begin(), members_.end(),
+                                   [&](const Member& m) { return m.part.name == name; });
+      if (it == members_.end())
+        return Error{Code::usage, "There is no body \"" + name + "\" that could be dropped.",
+                     "What is around the bodies is called \"" + members_.back().part.name + "\"."};
+      body_of_[it - members_.begin()] = -1;
+    }
+    if (!dropped.empty() && options_.interfaces == Interfaces::fuzzy)
+      return Error{Code::usage, "Bodies can be dropped from a mesh with exact interfaces only.",
+                   "Ask for exact interfaces, or give a domain around the bodies."};
+    std::int32_t next = 0;
+    for (std::int32_t& body : body_of_)
+      if (body >= 0) body = next++;
+    return {};
+  }
+
+  /// Faces of a body that belong to a group of the study are put in it, and what bounds a body
+  /// towards a dropped one are its walls.
+  void put_in_groups(SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface) const {
+    const auto group_called = [&](const std::string& name) {
+      auto it = std::find(mesh.groups.begin(), mesh.groups.end(), name);
+      if (it == mesh.groups.end()) it = mesh.groups.insert(it, name);
+      return static_cast<std::int32_t>(it - mesh.groups.begin());
+    };
+    std::size_t first = surface.faces.size();
+    for (std::size_t m = members_.size() - 1; m-- > 0;) {
+      const Member& member = members_[m];
+      first -= member.part.surface.faces.size();
+      for (std::size_t f = 0; member.groups && f < mesh.facets.size(); ++f) {
+        const auto face = static_cast<std::size_t>(mesh.facet_face[f]);
+        if (face < first || face >= first + member.groups->face_group.size()) continue;
+        const std::int32_t group = member.groups->face_group[face - first];
+        if (group >= 0) mesh.facet_group[f] = group_called(member.groups->names[group]);
+      }
+    }
+    for (std::string& name : mesh.groups)
+      for (std::size_t m = 0; m < members_.size(); ++m) {
+        if (body_of_[m] >= 0) continue;
+        const std::string& gone = members_[m].part.name;
+        const std::size_t bar = name.find('|');
+        if (bar == std::string::npos) continue;
+        if (name.substr(bar + 1) == gone)
+          name = name.substr(0, bar) + " walls";
+        else if (name.substr(0, bar) == gone)
+          name = name.substr(bar + 1) + " walls";
+      }
   }
 
   std::vector<double> interface_sizes() const {
@@ -444,9 +546,9 @@ class AssemblyLoop {
     Result<IterationRecord> record = measure(next, progress.portion(0.3, 0.4));
     if (!record) return record.error();
     next.layers.assign(next.mesh.points.size(), std::numeric_limits<double>::quiet_NaN());
-    const std::size_t bodies = dropped() ? members_.size() - 1 : members_.size();
-    outcomes_.resize(bodies);
+    const std::size_t bodies = members_.size();
     for (std::size_t m = 0; m < bodies; ++m) {
+      if (body_of_[m] < 0) continue;
       const double from = 0.4 + 0.6 * static_cast<double>(m) / static_cast<double>(bodies);
       const double to = 0.4 + 0.6 * static_cast<double>(m + 1) / static_cast<double>(bodies);
       if (Result<void> measured = measure_exact(m, next, progress.portion(from, to)); !measured)
@@ -461,7 +563,7 @@ class AssemblyLoop {
     BodyOutcome& outcome = outcomes_[m];
     Member& member = members_[m];
     std::vector<NodeId> old_id;
-    const SimplexMesh<3> body = extract_body(state.mesh, static_cast<std::int32_t>(m), &old_id);
+    const SimplexMesh<3> body = extract_body(state.mesh, body_of_[m], &old_id);
     outcome.interface_error = 0;
     outcome.mesh_volume = 0;
     for (const auto& e : body.elements) outcome.mesh_volume += signed_measure<3>(body.corners(e));
@@ -588,6 +690,7 @@ class AssemblyLoop {
   std::optional<ReferenceSurface<3>> domain_surface_;
   /// What holds the boundary and the interfaces, once the mesh was cut.
   std::unique_ptr<const ReferenceSurface<3>> exact_;
+  std::vector<std::int32_t> body_of_;  // [region] body of the exact mesh, -1: dropped
   double chord_tolerance_ = 0;
   std::string first_mesh_by_;
   MeshState current_;

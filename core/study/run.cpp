@@ -137,6 +137,7 @@ class BodyLoop {
       outcome_.notes.push_back(
           "At some places the walls have fewer layers than asked: 5 % of their area below " +
           std::to_string(best.layers.p5).substr(0, 4) + largest_place() + ".");
+    if (Result<void> told = tell_boundary_layers(progress); !told) return told.error();
     if (best_record_ + 1 != outcome_.records.size())
       outcome_.notes.push_back("The mesh of iteration " + std::to_string(best.iteration) +
                                " was kept: later ones had fewer layers.");
@@ -144,6 +145,32 @@ class BodyLoop {
   }
 
  private:
+  /// What the boundary layers asked by hand came to.
+  Result<void> tell_boundary_layers(const Progress& progress) {
+    SimplexMesh<3> mesh;
+    for (const SizingObject& object : sizing_of(study_, part_.name)) {
+      const auto* asked = std::get_if<BoundaryLayer>(&object.asks);
+      if (!asked) continue;
+      if (mesh.facets.empty()) {
+        mesh = best_.mesh;
+        for (std::int32_t& face : mesh.facet_face)
+          if (groups_) face = groups_->cad_face[static_cast<std::size_t>(face)];
+      }
+      const auto* faces = std::get_if<FacesShape>(&object.shape);
+      const Result<Layers> layers = measure_boundary_layer(
+          mesh, faces ? picked_faces(*faces, part_.surface) : std::vector<std::int32_t>{},
+          asked->thickness, asked->layers, options_.threads, progress);
+      if (!layers) return layers.error();
+      char text[200];
+      std::snprintf(text, sizeof text,
+                    "Boundary layer of %.4g mm: %.2f elements across in the mean, 5 %% below "
+                    "%.2f, of %d asked.",
+                    asked->thickness, layers->stats.mean, layers->stats.p5, asked->layers);
+      outcome_.notes.push_back(text);
+    }
+    return {};
+  }
+
   /// The part, its faces divided where the study's groups cover them in part.
   const Part& shape() const { return grouped_ ? *grouped_ : part_; }
   Result<void> divide_faces() {

@@ -93,6 +93,8 @@ struct Study {
   std::vector<BodySettings> bodies;   ///< by part name; a part without an entry gets the defaults
   std::vector<StudyZone> zones;       ///< further bodies, by formula; names differ
   std::optional<StudyDomain> domain;  ///< what one mesh of all bodies fills; unset: one mesh a body
+  /// Bodies, or the background, without which an exact mesh of all bodies is handed out.
+  std::vector<std::string> dropped;
   StudyOptions options;
   std::vector<SizingObject> sizing;   ///< on top of the natural metric, in this order
   std::vector<BoundaryGroup> groups;  ///< named parts of the boundary

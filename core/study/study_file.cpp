@@ -115,7 +115,9 @@ SizingShape read_shape(const Json& json, const std::string& path, std::string& c
       m.list("ids", s.ids);
       m.list("names", s.names);
       m.number("depth", s.depth, true);
-      if (s.ids.empty() && s.names.empty()) m.complain("", "needs \"ids\" or \"names\"");
+      m.flag("others", s.others);
+      if (s.ids.empty() && s.names.empty() && !s.others)
+        m.complain("", "needs \"ids\" or \"names\"");
       shape = s;
     }
   }
@@ -175,12 +177,22 @@ SizingObject read_sizing(const Json& json, std::size_t index, std::string& compl
     m.complain("shape", "is needed");
   if (m.has("zone")) {
     object.asks = read_zone(m.at("zone"), path + ".zone", complaint);
+  } else if (m.has("boundary_layer")) {
+    BoundaryLayer layer;
+    Members l(m.at("boundary_layer"), path + ".boundary_layer", complaint);
+    l.number("thickness", layer.thickness, false);
+    if (!(layer.thickness > 0)) l.complain("thickness", "is needed");
+    l.integer("layers", layer.layers, 1);
+    l.number("gradation", layer.gradation, false);
+    if (!(layer.gradation > 1)) l.complain("gradation", "must be above 1");
+    l.finish();
+    object.asks = layer;
   } else {
     SizeCorrection c;
     m.number("size", c.size);
     m.number("factor", c.factor);
     if (c.size.has_value() == c.factor.has_value())
-      m.complain("", "needs one of \"size\", \"factor\" and \"zone\"");
+      m.complain("", "needs one of \"size\", \"factor\", \"zone\" and \"boundary_layer\"");
     m.number("gradation", c.gradation, false);
     if (!(c.gradation > 1)) m.complain("gradation", "must be above 1");
     m.flag("keep_directions", c.keep_directions);
@@ -267,6 +279,7 @@ Json json_of(const SizingShape& shape) {
     if (!f->ids.empty()) json["ids"] = f->ids;
     if (!f->names.empty()) json["names"] = f->names;
     json["depth"] = f->depth;
+    if (f->others) json["others"] = true;
   }
   return json;
 }
@@ -304,6 +317,12 @@ Json json_of(const SizingObject& object) {
   json["shape"] = json_of(object.shape);
   if (const auto* zone = std::get_if<AnalyticZone>(&object.asks)) {
     json["zone"] = json_of(*zone);
+    return json;
+  }
+  if (const auto* layer = std::get_if<BoundaryLayer>(&object.asks)) {
+    json["boundary_layer"] = {{"thickness", layer->thickness},
+                              {"layers", layer->layers},
+                              {"gradation", layer->gradation}};
     return json;
   }
   const auto& c = std::get<SizeCorrection>(object.asks);
@@ -357,6 +376,7 @@ std::string study_to_json(const Study& study) {
   }
   for (const StudyZone& zone : study.zones) json["zones"].push_back(json_of(zone));
   if (study.domain) json["domain"] = json_of(*study.domain);
+  if (!study.dropped.empty()) json["dropped"] = study.dropped;
   const StudyOptions& o = study.options;
   Json& options = json["options"];
   if (o.chord_tolerance) options["chord_tolerance"] = *o.chord_tolerance;
@@ -412,6 +432,7 @@ Result<Study> study_from_json(const std::string& text, const std::string& where)
   m.list("left_out", study.left_out);
   each("bodies", study.bodies, read_body);
   each("zones", study.zones, read_study_zone);
+  m.list("dropped", study.dropped);
   for (std::size_t z = 0; z < study.zones.size(); ++z)
     if (const std::string finding = conflict(study.zones, z); !finding.empty())
       m.complain("zones[" + std::to_string(z) + "]", finding);

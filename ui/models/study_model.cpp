@@ -222,6 +222,8 @@ QVariant StudyModel::sizing_data(int row, int column, int role) const {
   } else if (column == value && role == Qt::DisplayRole) {
     if (const auto* zone = std::get_if<AnalyticZone>(&object.asks))
       return tr("%1 mm").arg(zone->sizes.minCoeff(), 0, 'g', 3);
+    if (const auto* layer = std::get_if<BoundaryLayer>(&object.asks))
+      return tr("%1 × %2 mm").arg(layer->layers).arg(layer->thickness, 0, 'g', 3);
     const auto& asked = std::get<SizeCorrection>(object.asks);
     return asked.size ? tr("%1 mm").arg(*asked.size, 0, 'g', 3)
                       : tr("× %1").arg(asked.factor.value_or(1), 0, 'g', 3);

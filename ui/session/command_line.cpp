@@ -44,7 +44,7 @@ Result<std::string> sizing_options(const Study& study) {
   const SizeCorrection* first = nullptr;
   for (const SizingObject& object : study.sizing) {
     const auto* asked = std::get_if<SizeCorrection>(&object.asks);
-    if (!asked) return cannot("\"" + object.name + "\", an analytic zone");
+    if (!asked) return cannot("\"" + object.name + "\", which is no size, factor or box of sizes");
     if (first &&
         (first->gradation != asked->gradation || first->keep_directions != asked->keep_directions))
       return cannot("sizes that grow differently");
