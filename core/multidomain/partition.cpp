@@ -36,7 +36,7 @@ ZoneDistance<D> Partition<D>::zone_at(int k, const Vec<D>& x, double reach) cons
     const double d = std::sqrt(d2);
     return {d, d < std::numeric_limits<double>::infinity() ? Vec<D>(beyond / d) : Vec<D>::Zero()};
   }
-  return regions_[k].zone->at(x);
+  return regions_[k].zone->within(x, reach);
 }
 
 template <int D>

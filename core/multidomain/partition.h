@@ -47,7 +47,7 @@ class Partition {
   /// The borders of all zones nearer than `reach`, each once, unless hidden under a region of
   /// higher priority; the normals as those of `border`. `found` is overwritten.
   void borders(const Vec<D>& x, double reach, std::vector<Border<D>>& found) const;
-  /// Signed distance of the zone itself. Beyond its box by more than `reach` a lower bound.
+  /// Signed distance of the zone itself; where it is `reach` or more perhaps a bound of its sign.
   ZoneDistance<D> zone_at(int region, const Vec<D>& x, double reach) const;
 
  private:

@@ -81,17 +81,91 @@ class Rim {
   std::vector<Piece> pieces_;
 };
 
+/// Signed distances at the centers of the cells of a tree that is fine near the boundary: as
+/// distances change by no more than one goes, they bound those of all points around.
+template <int D>
+class DistanceTree {
+ public:
+  template <class Distance>
+  DistanceTree(const Box<D>& box, int depth, const Distance& distance) {
+    if (!((box.hi - box.lo).minCoeff() >= 0)) return;
+    root_ = (box.lo + box.hi) / 2;
+    half_ = 0.55 * (box.hi - box.lo).maxCoeff();
+    cells_.resize(1);
+    grow(0, root_, half_, depth, distance);
+  }
+
+  /// A distance of the right sign that is at least `reach` and no more than the exact one; 0 where
+  /// nothing is known that far.
+  double bound(const Vec<D>& x, double reach) const {
+    if (cells_.empty() || (x - root_).cwiseAbs().maxCoeff() > half_) return 0;
+    Vec<D> center = root_;
+    double half = half_;
+    const double rounding = 1e-6 * half_;
+    for (std::int32_t c = 0;;) {
+      const Cell& cell = cells_[c];
+      const double left = std::abs(cell.distance) - (x - center).norm() - rounding;
+      if (left > 0 && left >= reach) return std::copysign(left, cell.distance);
+      if (cell.children < 0) return 0;
+      c = cell.children;
+      half /= 2;
+      for (int k = 0; k < D; ++k) {
+        const bool upper = x[k] > center[k];
+        c += upper ? 1 << k : 0;
+        center[k] += upper ? half : -half;
+      }
+    }
+  }
+
+ private:
+  struct Cell {
+    float distance = 0;
+    std::int32_t children = -1;  ///< the first of 2^D; -1: none
+  };
+  template <class Distance>
+  void grow(std::int32_t c, const Vec<D>& center, double half, int depth,
+            const Distance& distance) {
+    const double d = distance(center);
+    cells_[c].distance = static_cast<float>(d);
+    if (depth == 0 || std::abs(d) > 2 * half * std::sqrt(static_cast<double>(D))) return;
+    const auto first = static_cast<std::int32_t>(cells_.size());
+    cells_[c].children = first;
+    cells_.resize(cells_.size() + (1 << D));
+    for (int child = 0; child < (1 << D); ++child) {
+      Vec<D> at = center;
+      for (int k = 0; k < D; ++k) at[k] += (child >> k & 1) != 0 ? half / 2 : -half / 2;
+      grow(first + child, at, half / 2, depth - 1, distance);
+    }
+  }
+
+  Vec<D> root_ = Vec<D>::Zero();
+  double half_ = 0;
+  std::vector<Cell> cells_;
+};
+
 template <int D>
 class SurfaceZone : public Zone<D> {
  public:
   SurfaceZone(const ReferenceSurface<D>& surface, Inside inside) : locator_(surface) {
     for (const Vec<D>& p : surface.points) box_.add(p);
+    // About as many cells at the boundary as facets, as far as that pays.
+    const double count = static_cast<double>(surface.facets.size()) + 1;
+    const int depth = std::clamp(static_cast<int>(std::lround(std::log2(count) / (D - 1))), 2, 6);
     if constexpr (D == 3)
       if (inside == Inside::winding && !locator_.empty()) {
         const Facets facets = welded(surface);
         winding_ = std::make_unique<WindingNumber>(surface.points, facets);
         rim_ = std::make_unique<Rim>(surface.points, facets);
       }
+    // Of surfaces with holes the distance is a bound only, which may jump.
+    if (inside == Inside::normals && !locator_.empty())
+      tree_ = std::make_unique<DistanceTree<D>>(
+          box_, depth, [this](const Vec<D>& x) { return locator_.signed_distance(x); });
+  }
+  ZoneDistance<D> within(const Vec<D>& x, double reach) const override {
+    if (tree_)
+      if (const double d = tree_->bound(x, reach); d != 0) return {d, Vec<D>::Zero()};
+    return at(x);
   }
   ZoneDistance<D> at(const Vec<D>& x) const override {
     if (locator_.empty()) return {};
@@ -129,6 +203,7 @@ class SurfaceZone : public Zone<D> {
   Locator<D> locator_;
   std::unique_ptr<WindingNumber> winding_;
   std::unique_ptr<Rim> rim_;
+  std::unique_ptr<const DistanceTree<D>> tree_;
   Box<D> box_;
 };
 

@@ -27,6 +27,9 @@ class Zone {
   /// Voronoi cells, near holes of open surfaces and for zones made of others.
   virtual ZoneDistance<D> at(const Vec<D>& x) const = 0;
   double distance(const Vec<D>& x) const { return at(x).distance; }
+  /// The same where it is below `reach` mm; farther from the boundary perhaps only a distance of
+  /// the right sign between both, without a normal: cheaper.
+  virtual ZoneDistance<D> within(const Vec<D>& x, double /*reach*/) const { return at(x); }
   /// Contains the zone; without end where the zone is.
   virtual Box<D> box() const = 0;
 };

@@ -16,7 +16,7 @@ constexpr double kRounding = 1e-9;
 
 /// The best elements have a little less than a layer each: asked for by this much finer, the poor
 /// places of a boundary layer have the layers too.
-constexpr double kFinerLayers = 1.2;
+constexpr double kFinerLayers = 1.13;
 
 template <class... Cases>
 struct Overloaded : Cases... {
