@@ -183,6 +183,11 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
       }
     }
   }
+  // Four plots leave little room.
+  if (session_.study().domain) {
+    title = tr("Layers");
+    low.name = tr("5 %");
+  }
   layers_->set_title(title);
   layers_->set_series({mean, low});
   layers_->set_target(session_.iterations().empty() ? std::nullopt : asked, tr("asked"));

@@ -71,10 +71,10 @@ DomainForm::DomainForm(Session& session, QWidget* parent)
   rows_->add(tr("Meshes"), meshes_);
   domain_ = choice("domain", tr("What the mesh of all bodies fills"));
   domain_->addItem(tr("the bodies alone"), bodies);
-  domain_->addItem(tr("a box with a margin"), margin);
+  domain_->addItem(tr("box with a margin"), margin);
   domain_->addItem(tr("one of the bodies"), body);
-  domain_->addItem(tr("a box by two corners"), box);
-  domain_->addItem(tr("a cylinder"), cylinder);
+  domain_->addItem(tr("box by corners"), box);
+  domain_->addItem(tr("cylinder"), cylinder);
   rows_->add(tr("Domain"), domain_);
   share_ = number_box(0.1, 1000, 5, "domain_share",
                       tr("Around the box of all bodies on every side, as a share of its diagonal"));
@@ -97,13 +97,13 @@ DomainForm::DomainForm(Session& session, QWidget* parent)
   interfaces_ = choice("interfaces", tr("Exact: borders between bodies lie on faces of the mesh.\n"
                                         "Fuzzy: they run through thin elements, each filled in\n"
                                         "part by several bodies."));
-  interfaces_->addItem(tr("exact, on faces"), int(Interfaces::exact));
-  interfaces_->addItem(tr("fuzzy, through elements"), int(Interfaces::fuzzy));
+  interfaces_->addItem(tr("exact"), int(Interfaces::exact));
+  interfaces_->addItem(tr("fuzzy"), int(Interfaces::fuzzy));
   rows_->add(tr("Interfaces"), interfaces_);
   capture_ = choice("capture", tr("What draws the mesh together at the borders: the distance to\n"
                                   "them, or the gradient of the filling ratio as in the thesis"));
   capture_->addItem(tr("by distance"), int(Capture::distance));
-  capture_->addItem(tr("by gradient of filling"), int(Capture::gradient));
+  capture_->addItem(tr("by gradient"), int(Capture::gradient));
   rows_->add(tr("Drawn to them"), capture_);
   connect_fields();
 }

@@ -7,7 +7,7 @@ namespace lamella::ui {
 namespace {
 
 /// Of the hull's diagonal: chords that look round.
-constexpr double chord = 1e-3;
+constexpr double chord = 3e-4;
 
 /// The domain, or without one a box around whatever has an end.
 StudyZone drawn_hull(const Study& study, const std::vector<Part>& parts) {

@@ -85,7 +85,6 @@ struct Scene::Impl {
     renderer.AddActor(mesh_lines);
     style_lines(*hull_lines, *hull_mapper);
     hull_lines->GetProperty()->SetColor(0.45, 0.52, 0.60);
-    hull_lines->GetProperty()->SetLineWidth(1.2F);
     hull_lines->PickableOff();
     hull_lines->VisibilityOff();
     renderer.AddActor(hull_lines);
