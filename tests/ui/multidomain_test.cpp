@@ -5,6 +5,7 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QSignalSpy>
+#include <QTabWidget>
 #include <QTest>
 #include <QTextBrowser>
 #include <QTreeView>
@@ -38,6 +39,14 @@ void write_box(const std::filesystem::path& file, const Vec<3>& low, const Vec<3
   const auto surface = zone_surface(box, {box}, box, 0.1);
   ASSERT_TRUE(surface);
   ASSERT_TRUE(write_stl(*surface, file));
+}
+
+/// For a person to judge, where LAMELLA_PICTURES names a folder.
+void keep_picture(MainWindow& window, const char* name) {
+  const QString to = qEnvironmentVariable("LAMELLA_PICTURES");
+  if (to.isEmpty()) return;
+  QTest::qWait(200);
+  EXPECT_TRUE(window.grab().save(to + "/" + name + ".png"));
 }
 
 /// One mesh of the box [0, 10]^3: what is left of x = 4 is all of the first body, what is right of
@@ -359,6 +368,11 @@ TEST_F(MultidomainTest, OverlapsAreMeasuredAndShown) {
   const auto place = shown[0][0].value<Vec<3>>();
   EXPECT_TRUE((place.array() > Vec<3>(3, 4, 2).array()).all());
   EXPECT_TRUE((place.array() < Vec<3>(4, 6, 10).array()).all());
+  EXPECT_EQ(session().selection(), (std::vector<int>{0, 2})) << "the two are outlined";
+  Q_EMIT text->anchorClicked(QUrl("cut:overlap:0"));
+  ASSERT_TRUE(window_.view().section());
+  EXPECT_EQ(window_.view().section()->origin, place);
+  keep_picture(window_, "overlaps");
   // What was found is of these bodies.
   session().remove_item({ItemKind::body, 2});
   EXPECT_FALSE(session().overlaps());
@@ -371,6 +385,7 @@ TEST_F(MultidomainTest, OverlapsAreMeasuredAndShown) {
   ASSERT_EQ(session().overlaps()->found.report.gaps.size(), 1u);
   EXPECT_NEAR(session().overlaps()->found.report.gaps[0].least_width, 2, 0.02);
   EXPECT_TRUE(text->toPlainText().contains("1 gap narrower than 3 mm"));
+  keep_picture(window_, "gaps");
   find<LengthBox>("gap_width")->setValue(1);
   find<QPushButton>("look_for_overlaps")->click();
   ASSERT_TRUE(wait_idle());
@@ -444,6 +459,11 @@ TEST(MultidomainRun, TwoBallsAreMeshedSavedAndSeenAgain) {
   std::size_t around = 0;
   for (const std::int32_t body : state->mesh.element_body) around += body == 2;
   EXPECT_EQ(window.view().scene()->shown_elements(), state->mesh.element_count() - around);
+  session.select_item({ItemKind::domain, 0});
+  keep_picture(window, "domain");
+  window.findChild<QTabWidget*>()->setCurrentIndex(2);
+  window.actions()[Act::section]->setChecked(true);
+  keep_picture(window, "bodies-cut");
   session.save(folder / "balls.lamella");
   ASSERT_TRUE(wait_idle());
 

@@ -21,11 +21,16 @@ QString cell(const QString& text, bool number = true) {
 
 QString number(double value) { return QString("%L1").arg(value, 0, 'g', 3); }
 
-QString link(const char* kind, std::size_t index) {
-  return cell(QString("<a style='color:%1' href='place:%2:%3'>%4</a>")
-                  .arg(theme::accent.name(), kind)
-                  .arg(index)
-                  .arg(OverlapPanel::tr("Show")),
+QString link(const char* what, const char* kind, std::size_t index, const QString& text) {
+  return QString("<a style='color:%1' href='%2:%3:%4'>%5</a>")
+      .arg(theme::accent.name(), what, kind)
+      .arg(index)
+      .arg(text);
+}
+
+QString links(const char* kind, std::size_t index) {
+  return cell(link("place", kind, index, OverlapPanel::tr("Show")) + "&nbsp; " +
+                  link("cut", kind, index, OverlapPanel::tr("Cut open")),
               false);
 }
 
@@ -109,7 +114,7 @@ QString OverlapPanel::found_html() const {
     for (std::size_t k = 0; k < overlaps.size(); ++k) {
       const Overlap& o = overlaps[k];
       html +=
-          "<tr>" + link("overlap", k) +
+          "<tr>" + links("overlap", k) +
           cell(tr("%1 and %2").arg(name(o.first), name(o.second)), false) +
           cell(tr("%1 ± %2").arg(number(o.volume), number(o.error))) + cell(number(o.depth)) +
           cell(o.inner ? tr("%1 lies wholly in the other").arg(name(*o.inner)) : QString(), false) +
@@ -126,7 +131,7 @@ QString OverlapPanel::found_html() const {
     html += row({{}, tr("Bodies"), tr("Volume, mm³"), tr("Narrowest, mm"), tr("mean")});
     for (std::size_t k = 0; k < gaps.size(); ++k) {
       const Gap& g = gaps[k];
-      html += "<tr>" + link("gap", k) +
+      html += "<tr>" + links("gap", k) +
               cell(tr("%1 and %2").arg(name(g.first), name(g.second)), false) +
               cell(tr("%1 ± %2").arg(number(g.volume), number(g.error))) +
               cell(number(g.least_width)) + cell(number(g.mean_width)) + "</tr>";
@@ -141,16 +146,29 @@ QString OverlapPanel::found_html() const {
 void OverlapPanel::jump(const QUrl& to) {
   const QStringList words = to.toString().split(':');
   if (words.size() != 3 || !session_.overlaps()) return;
-  const auto& [overlaps, gaps] = session_.overlaps()->found.report;
+  const auto& [names, report] = session_.overlaps()->found;
   const auto k = static_cast<std::size_t>(words[2].toInt());
-  // So much around it that its surroundings are recognized.
-  if (words[1] == "overlap" && k < overlaps.size())
-    session_.show_place(overlaps[k].place,
-                        std::max(4 * overlaps[k].depth, std::cbrt(overlaps[k].volume)),
-                        tr("overlap %1 mm deep").arg(number(overlaps[k].depth)));
-  else if (words[1] == "gap" && k < gaps.size())
-    session_.show_place(gaps[k].place, std::max(8 * gaps[k].least_width, std::cbrt(gaps[k].volume)),
-                        tr("gap of %1 mm").arg(number(gaps[k].least_width)));
+  const auto show = [&](const auto& found, double size, const QString& text) {
+    // The two are outlined, wherever the place is hidden behind.
+    std::vector<int> bodies;
+    for (std::size_t b = 0; b < session_.study().bodies.size(); ++b)
+      for (const int region : {found.first, found.second})
+        if (session_.study().bodies[b].name == names[static_cast<std::size_t>(region)])
+          bodies.push_back(static_cast<int>(b));
+    session_.select(bodies, -1);
+    // So much around it that its surroundings are recognized.
+    const double radius = std::max(size, std::cbrt(found.volume));
+    if (words[0] == "cut")
+      session_.cut_at(found.place, radius, text);
+    else
+      session_.show_place(found.place, radius, text);
+  };
+  if (words[1] == "overlap" && k < report.overlaps.size())
+    show(report.overlaps[k], 4 * report.overlaps[k].depth,
+         tr("overlap %1 mm deep").arg(number(report.overlaps[k].depth)));
+  else if (words[1] == "gap" && k < report.gaps.size())
+    show(report.gaps[k], 8 * report.gaps[k].least_width,
+         tr("gap of %1 mm").arg(number(report.gaps[k].least_width)));
 }
 
 }  // namespace lamella::ui

@@ -64,9 +64,12 @@ void ReportPanel::refresh() {
     html += cell(tr("%1 %").arg(body.layers.share_reached * 100, 0, 'f', 1));
     html += cell(QString("%L1").arg(body.mesh_volume, 0, 'f', 1));
     html += cell(tr("%1 %").arg(off, 0, 'f', 3));
-    html += cell(tr("%1 of %2 mm")
-                     .arg(body.boundary_distance.largest(), 0, 'g', 3)
-                     .arg(body.chord_tolerance, 0, 'g', 3));
+    // Fuzzy borders have no faces that could be off.
+    const bool fuzzy = body.interface_size > 0;
+    html += cell(fuzzy ? tr("–")
+                       : tr("%1 of %2 mm")
+                             .arg(body.boundary_distance.largest(), 0, 'g', 3)
+                             .arg(body.chord_tolerance, 0, 'g', 3));
     html += cell(QString::fromStdString(body.first_mesh_by).toHtmlEscaped()) + "</tr>";
   }
   html += "</table>";

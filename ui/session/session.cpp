@@ -546,6 +546,11 @@ void Session::show_place(const Vec<3>& at, double radius, const QString& words) 
   Q_EMIT place_shown(at, radius, words);
 }
 
+void Session::cut_at(const Vec<3>& at, double radius, const QString& words) {
+  Q_EMIT cut_asked(at);
+  show_place(at, radius, words);
+}
+
 void Session::clear_iterations() {
   outcome_.reset();
   run_study_.reset();

@@ -139,6 +139,8 @@ class Session : public QObject {
   void remove_item(const Item& item);
   /// Asks the view to bring a place close and mark it.
   void show_place(const Vec<3>& at, double radius, const QString& text);
+  /// The same, with the model cut open through it.
+  void cut_at(const Vec<3>& at, double radius, const QString& text);
   void edit_body(int index, const QString& what, const BodySettings& after);
   /// Changes the settings of every selected body in one undoable step.
   void edit_selection(const QString& what, const std::function<void(BodySettings&)>& change);
@@ -162,6 +164,7 @@ class Session : public QObject {
   /// A study file is open, with all its parts.
   void study_opened(const QString& file);
   void place_shown(const lamella::Vec<3>& at, double radius, const QString& text);
+  void cut_asked(const lamella::Vec<3>& at);
   void failed(const QString& message, const QString& hint);
   /// An STL was read without a unit; its size may need another one.
   void unit_assumed(const QString& file, const QString& size);

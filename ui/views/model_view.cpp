@@ -104,6 +104,12 @@ void ModelView::connect_session() {
             picks_->mark(at, text);
             overlay_->update();
           });
+  connect(&session_, &Session::cut_asked, this, [this](const Vec<3>& at) {
+    if (!scene_) return;
+    Section cut = section().value_or(section_across(-1));
+    cut.origin = at;
+    set_section(cut);
+  });
 }
 
 void ModelView::connect_actions() {

@@ -39,6 +39,10 @@ constexpr const char* thickness_array = "thickness";
 constexpr const char* layers_array = "layers";
 constexpr const char* quality_array = "quality";
 
+QColor mixed(const QColor& a, const QColor& b) {
+  return {(a.red() + b.red()) / 2, (a.green() + b.green()) / 2, (a.blue() + b.blue()) / 2};
+}
+
 }  // namespace
 
 struct Scene::Impl {
@@ -513,7 +517,9 @@ struct Scene::Impl {
                                                static_cast<std::size_t>(facet));
         if (group >= 0) c = group_colors[static_cast<std::size_t>(group)];
       }
-      if (made_by_section) c = inside_color(c);
+      // Bodies side by side in a cut must differ.
+      const QColor pale = inside_color(c);
+      if (made_by_section) c = state->mesh.bodies.size() > 1 ? mixed(c, pale) : pale;
       const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
                                       static_cast<unsigned char>(c.green()),
                                       static_cast<unsigned char>(c.blue())};
