@@ -10,7 +10,6 @@
 #include <vtkFloatArray.h>
 #include <vtkImplicitBoolean.h>
 #include <vtkIntArray.h>
-#include <vtkLight.h>
 #include <vtkLookupTable.h>
 #include <vtkPlane.h>
 #include <vtkPointData.h>
@@ -21,12 +20,12 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
-#include <QCoreApplication>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "ui/theme.h"
+#include "ui/views/legends.h"
 #include "ui/views/mesh_data.h"
 #include "ui/views/scene_actors.h"
 
@@ -38,10 +37,6 @@ constexpr const char* node_array = "node";
 constexpr const char* thickness_array = "thickness";
 constexpr const char* layers_array = "layers";
 constexpr const char* quality_array = "quality";
-
-QColor mixed(const QColor& a, const QColor& b) {
-  return {(a.red() + b.red()) / 2, (a.green() + b.green()) / 2, (a.blue() + b.blue()) / 2};
-}
 
 }  // namespace
 
@@ -92,18 +87,7 @@ struct Scene::Impl {
     hull_lines->PickableOff();
     hull_lines->VisibilityOff();
     renderer.AddActor(hull_lines);
-    // A key light over the left shoulder gives faces of different slope different shades; the
-    // second one keeps what it leaves in the dark readable.
-    renderer.AutomaticLightCreationOff();
-    for (const auto& [x, y, z, intensity] :
-         {std::array{-0.30, 0.60, 1.0, 0.95}, std::array{0.7, -0.2, 1.0, 0.35}}) {
-      vtkNew<vtkLight> light;
-      light->SetLightTypeToCameraLight();
-      light->SetPosition(x, y, z);
-      light->SetFocalPoint(0, 0, 0);
-      light->SetIntensity(intensity);
-      renderer.AddLight(light);
-    }
+    add_lights(renderer);
   }
 
   bool part_visible(int part) const {
@@ -261,18 +245,9 @@ struct Scene::Impl {
   /// Whether the body of a face of the mesh ends there, at one that is hidden.
   bool is_bared(std::array<NodeId, 3> face) {
     if (!bared) {
-      bared.emplace();
       if (!skin) skin = skin_of(grid);
-      auto* node = vtkIntArray::SafeDownCast(skin->GetPointData()->GetArray(node_array));
-      vtkNew<vtkIdList> corner;
-      for (vtkIdType f = 0; f < skin->GetNumberOfCells(); ++f) {
-        skin->GetCellPoints(f, corner);
-        std::array<NodeId, 3> one{};
-        for (int k = 0; k < 3; ++k) one[std::size_t(k)] = node->GetValue(corner->GetId(k));
-        std::sort(one.begin(), one.end());
-        bared->push_back(one);
-      }
-      std::sort(bared->begin(), bared->end());
+      bared = sorted_faces(*skin,
+                           *vtkIntArray::SafeDownCast(skin->GetPointData()->GetArray(node_array)));
     }
     std::sort(face.begin(), face.end());
     return std::binary_search(bared->begin(), bared->end(), face);
@@ -356,23 +331,16 @@ struct Scene::Impl {
 
   void recolor() {
     legend = {};
-    const auto tr = [](const char* text) { return QCoreApplication::translate("Scene", text); };
-    if (color_by != ColorBy::body && !has(color_by) && (state || !parts.empty())) {
-      legend.title = color_by == ColorBy::quality     ? tr("Quality c(T)")
-                     : color_by == ColorBy::thickness ? tr("Wall thickness")
-                     : color_by == ColorBy::layers    ? tr("Layers through the wall")
-                                                      : tr("Filling ratio");
-      legend.missing = !state                         ? tr("known once the part is meshed")
-                       : color_by == ColorBy::filling ? tr("this mesh has no fuzzy interfaces")
-                                                      : tr("not in this mesh");
-    }
+    if (color_by != ColorBy::body && !has(color_by) && (state || !parts.empty()))
+      legend = missing_legend(color_by, state != nullptr);
     color_parts();
     if (!grid) return;
     // Shading gives a body its shape, but the colors of values must be those of the legend.
     const bool values = color_by != ColorBy::body && has(color_by);
     mesh_actor->GetProperty()->SetAmbient(values ? 0.74 : 0.42);
     mesh_actor->GetProperty()->SetDiffuse(values ? 0.28 : 0.68);
-    if (color_by != ColorBy::body && has(color_by)) fill_legend();
+    if (color_by != ColorBy::body && has(color_by))
+      legend = field_legend(color_by, *state, layers_asked, filled_by);
     color(*mesh_mapper, false);
     for (const Cut& cut : cuts) {
       cut.actor->GetProperty()->SetAmbient(1);
@@ -454,7 +422,8 @@ struct Scene::Impl {
     mapper.UseLookupTableScalarRangeOn();
     mapper.SetColorModeToMapScalars();
     if (color_by == ColorBy::filling) {
-      data.GetCellData()->SetScalars(filling_bands(data));
+      auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
+      data.GetCellData()->SetScalars(filling_bands(*state->filling, filled_region(), *element));
       mapper.SetScalarModeToUseCellData();
       mapper.InterpolateScalarsBeforeMappingOff();
     } else if (color_by == ColorBy::quality) {
@@ -468,23 +437,6 @@ struct Scene::Impl {
       mapper.InterpolateScalarsBeforeMappingOn();
     }
     data.Modified();
-  }
-
-  /// The band of each face's element in the map of filling ratios, in [0, 1].
-  vtkSmartPointer<vtkFloatArray> filling_bands(vtkPolyData& data) const {
-    auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
-    auto bands = vtkSmartPointer<vtkFloatArray>::New();
-    bands->SetName("filling");
-    bands->SetNumberOfTuples(data.GetNumberOfCells());
-    const int region = filled_region();
-    for (vtkIdType f = 0; f < data.GetNumberOfCells(); ++f) {
-      const auto e = static_cast<std::size_t>(element->GetValue(f));
-      const double ratio = state->filling->ratio(e, region);
-      // An element that is filled by one body alone is full or empty, whatever the numbers say.
-      const bool half = ratio >= 0.5, mixed = state->filling->mixed(e) && ratio > 0;
-      bands->SetValue(f, !half ? (mixed ? 0.375F : 0.125F) : (mixed ? 0.625F : 0.875F));
-    }
-    return bands;
   }
 
   void color_by_body(vtkPolyData& data, bool inside) {
@@ -518,43 +470,13 @@ struct Scene::Impl {
         if (group >= 0) c = group_colors[static_cast<std::size_t>(group)];
       }
       // Bodies side by side in a cut must differ.
-      const QColor pale = inside_color(c);
-      if (made_by_section) c = state->mesh.bodies.size() > 1 ? mixed(c, pale) : pale;
+      if (made_by_section) c = inside_color(c, state->mesh.bodies.size() > 1 ? 2 : 1);
       const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
                                       static_cast<unsigned char>(c.green()),
                                       static_cast<unsigned char>(c.blue())};
       rgb->SetTypedTuple(f, bytes);
     }
     data.GetCellData()->SetScalars(rgb);
-  }
-
-  void fill_legend() {
-    const auto tr = [](const char* text) { return QCoreApplication::translate("Scene", text); };
-    switch (color_by) {
-      case ColorBy::body:
-        break;
-      case ColorBy::quality:
-        legend = {tr("Quality c(T)"), 0, 1, rating_map()};
-        break;
-      case ColorBy::thickness: {
-        const auto& t = state->thickness;
-        const auto [low, high] = robust_range({t.begin() + 1, t.end()});
-        legend = {tr("Wall thickness, mm"), low, high, sequential_map()};
-        break;
-      }
-      case ColorBy::layers: {
-        // One band a layer, the one of n layers being the first good one.
-        const int n = layers_asked;
-        legend = {tr("Layers through the wall, %1 asked").arg(n), 0, 2.0 * n, rating_map()};
-        legend.map.bands = std::min(2 * n, 24);
-        legend.missing = tr("no wall to count in");
-        break;
-      }
-      case ColorBy::filling:
-        legend = {tr("Filled by %1").arg(QString::fromStdString(filled_by)), 0, 1, filling_map()};
-        legend.bands = {tr("0 %"), tr("< 50 %"), tr("≥ 50 %"), tr("100 %")};
-        break;
-    }
   }
 };
 
