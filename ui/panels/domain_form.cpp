@@ -2,6 +2,7 @@
 
 #include <QComboBox>
 #include <algorithm>
+#include <cmath>
 
 #include "core/geometry/triangles.h"
 #include "core/study/domain.h"
