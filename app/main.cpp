@@ -35,8 +35,8 @@ struct Script {
   bool cut = false;    ///< with the model cut open
   bool flat = false;   ///< the cut goes through elements
   QString near;        ///< "x,y,z,r": brings what is within r mm of a point close
-  QString color;       ///< body, quality, thickness or layers
-  QString select;      ///< group, sizing or cut: the first of them is selected
+  QString color;       ///< body, quality, thickness, layers or filling
+  QString select;      ///< group, sizing, cut or domain: the first one is selected
   int tab = 0;         ///< of the results
   QString screenshot;  ///< picture of the window
   QString section;     ///< picture of the 3D view, cut open
@@ -143,10 +143,10 @@ int play(ui::MainWindow& window, const Script& script) {
   }
   if (failed) return exit_code(Code::bad_input);
   bool saved = true;
-  const QStringList colors{"body", "quality", "thickness", "layers"};
+  const QStringList colors{"body", "quality", "thickness", "layers", "filling"};
   if (const auto color = colors.indexOf(script.color); color >= 0)
     window.view().set_color_by(ui::ColorBy(color));
-  const QStringList kinds{"body", "group", "sizing", "cut"};
+  const QStringList kinds{"body", "group", "sizing", "cut", "domain"};
   if (const auto kind = kinds.indexOf(script.select); kind > 0)
     session.select_item({ui::ItemKind(kind), 0});
   if (script.cut) window.view().look_at_section();
@@ -204,9 +204,9 @@ int main(int argc, char** argv) {
   option("cut", "picture with a section");
   option("flat", "the section cuts through elements");
   option("near", "brings what is within R of a point close", "X,Y,Z,R");
-  option("color", "body, quality, thickness or layers", "FIELD");
+  option("color", "body, quality, thickness, layers or filling", "FIELD");
   option("dark", "the dark theme");
-  option("select", "group, sizing or cut whose properties are shown", "KIND");
+  option("select", "group, sizing, cut or domain whose properties are shown", "KIND");
   option("tab", "tab of the results, from 0", "K");
   option("screenshot", "picture of the window, then leave", "FILE");
   option("section", "picture of a section, then leave", "FILE");

@@ -101,16 +101,41 @@ Result<ExportCertificate> export_stl(const fs::path& file, const MeshState& stat
                  summary_of(*back), false, 1e-4);
 }
 
+constexpr const char* kFilling = "filling ";
+
 /// The filling ratio of each body, "filling NAME".
 std::vector<ElementField> filling_fields(const MeshState& state) {
   std::vector<ElementField> fields;
   for (std::size_t b = 0; b < state.mesh.bodies.size(); ++b) {
-    ElementField field{"filling " + state.mesh.bodies[b], {}};
+    ElementField field{kFilling + state.mesh.bodies[b], {}};
     for (std::size_t e = 0; e < state.mesh.elements.size(); ++e)
       field.values.push_back(state.filling->ratio(e, static_cast<std::int32_t>(b)));
     fields.push_back(std::move(field));
   }
   return fields;
+}
+
+/// What `filling_fields` says; null unless every body has its field.
+std::shared_ptr<const Filling> filling_of(const std::vector<ElementField>& fields,
+                                          const SimplexMesh<3>& mesh) {
+  if (mesh.bodies.empty()) return nullptr;
+  std::vector<const ElementField*> of_body;
+  for (const std::string& body : mesh.bodies) {
+    const auto it = std::find_if(fields.begin(), fields.end(), [&](const ElementField& field) {
+      return field.name == kFilling + body;
+    });
+    if (it == fields.end()) return nullptr;
+    of_body.push_back(&*it);
+  }
+  auto filling = std::make_shared<Filling>();
+  filling->regions = static_cast<int>(of_body.size());
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    for (std::size_t b = 0; b < of_body.size(); ++b)
+      if (const double ratio = of_body[b]->values[e]; ratio > 0)
+        filling->shares.push_back({static_cast<std::int32_t>(b), static_cast<float>(ratio)});
+    filling->first.push_back(static_cast<std::uint32_t>(filling->shares.size()));
+  }
+  return filling;
 }
 
 }  // namespace
@@ -207,6 +232,7 @@ Result<MeshState> read_mesh(const fs::path& file, const Progress& progress) {
     state.thickness = std::move(content->thickness);
     state.layers = std::move(content->layers);
     state.quality = std::move(content->quality);
+    state.filling = filling_of(content->of_elements, state.mesh);
   } else if (ending == ".mesh") {
     Result<SimplexMesh<3>> mesh = read_medit<3>(file, progress);
     if (!mesh) return mesh.error();

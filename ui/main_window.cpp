@@ -24,6 +24,7 @@
 #include "ui/panels/banner.h"
 #include "ui/panels/convergence_panel.h"
 #include "ui/panels/log_panel.h"
+#include "ui/panels/overlap_panel.h"
 #include "ui/panels/properties_panel.h"
 #include "ui/panels/quality_panel.h"
 #include "ui/panels/report_panel.h"
@@ -122,6 +123,8 @@ void MainWindow::make_body() {
   connect(quality, &QualityPanel::range_changed, this,
           [this, quality] { view_->set_quality_range(quality->range()); });
   results_->addTab(new ReportPanel(*session_), tr("Report"));
+  overlaps_ = new OverlapPanel(*session_);
+  results_->addTab(overlaps_, tr("Overlaps and gaps"));
   auto* log = new LogPanel;
   results_->addTab(log, tr("Log"));
   inner->addWidget(results_);
@@ -168,7 +171,7 @@ void MainWindow::make_menus() {
   fill(tr("&Study"),
        {Act::add_group, Act::pick_faces, Act::pick_flood, line, Act::correct_near,
         Act::correct_face, Act::add_sphere, Act::add_box, Act::add_cylinder, line, Act::add_cut});
-  fill(tr("&Mesh"), {Act::run, Act::cancel, Act::forecast});
+  fill(tr("&Mesh"), {Act::run, Act::cancel, Act::forecast, line, Act::overlaps});
   fill(tr("&View"), {Act::section,
                      Act::section_x,
                      Act::section_y,
@@ -297,6 +300,11 @@ void MainWindow::connect_actions() {
   connect(act[Act::save], &QAction::triggered, this, [this] { save(false); });
   connect(act[Act::save_as], &QAction::triggered, this, [this] { save(true); });
   connect(act[Act::forecast], &QAction::triggered, forecaster_, &Forecaster::ask);
+  connect(act[Act::overlaps], &QAction::triggered, this, [this] {
+    (*actions_)[Act::show_results]->setChecked(true);
+    results_->setCurrentWidget(overlaps_);
+    overlaps_->look();
+  });
   connect(act[Act::add_group], &QAction::triggered, this, [this] {
     const bool one = session_->parts().size() == 1;
     add_group(*session_, GroupKind::gate, one ? session_->body(0).name : std::string(), {});
@@ -330,12 +338,19 @@ void MainWindow::update_actions() {
   const bool idle = session_->activity() == Activity::idle;
   const bool shown = !session_->empty();
   act[Act::open]->setEnabled(idle);
-  act[Act::add]->setEnabled(idle && !session_->parts().empty());
-  const bool parts = !session_->parts().empty();
-  act[Act::remove]->setEnabled(idle && session_->item().index >= 0);
+  act[Act::add]->setEnabled(idle && session_->has_bodies());
+  const bool parts = session_->has_bodies();
+  // What is around the bodies goes with the domain.
+  const Item item = session_->item();
+  const bool own =
+      item.kind != ItemKind::body || session_->is_part(item.index) || session_->is_zone(item.index);
+  act[Act::remove]->setEnabled(idle && item.index >= 0 && own);
   for (const Act a : {Act::save, Act::save_as}) act[a]->setEnabled(idle && parts);
   act[Act::copy_command]->setEnabled(parts);
-  act[Act::forecast]->setEnabled(session_->can_run() && session_->services().forecast);
+  act[Act::forecast]->setEnabled(session_->can_run() && session_->services().forecast &&
+                                 !session_->study().domain);
+  act[Act::overlaps]->setEnabled(idle &&
+                                 session_->parts().size() + session_->study().zones.size() > 1);
   for (int a = int(Act::add_group); a <= int(Act::correct_face); ++a)
     act[Act(a)]->setEnabled(parts);
   for (int a = int(Act::measure); a <= int(Act::box_zoom); ++a) act[Act(a)]->setEnabled(shown);
@@ -372,11 +387,12 @@ void MainWindow::update_status() {
       text += tr("     layers %1 (5 %: %2)")
                   .arg(record.layers.mean, 0, 'f', 1)
                   .arg(record.layers.p5, 0, 'f', 1);
+    if (record.mixed > 0) text += tr("     %L1 mixed").arg(record.mixed);
     counts_->setText(text);
-  } else if (!session_->parts().empty()) {
+  } else if (session_->has_bodies()) {
     std::size_t triangles = 0;
-    for (const Part& part : session_->parts()) triangles += part.surface.facets.size();
-    const std::size_t bodies = session_->parts().size();
+    for (const Part& part : session_->shapes()) triangles += part.surface.facets.size();
+    const std::size_t bodies = session_->parts().size() + session_->study().zones.size();
     counts_->setText((bodies == 1 ? tr("1 body") : tr("%1 bodies").arg(bodies)) +
                      tr("     %L1 surface triangles").arg(triangles));
   } else {
@@ -392,6 +408,7 @@ void MainWindow::update_status() {
     state_->setText(session_->cancelling()            ? tr("Cancelling…")
                     : activity == Activity::loading   ? tr("Opening…")
                     : activity == Activity::exporting ? tr("Exporting…")
+                    : activity == Activity::checking  ? tr("Looking…")
                                                       : tr("Running…"));
     return;
   }
@@ -406,7 +423,7 @@ void MainWindow::update_status() {
                     : outcome->converged ? tr("Converged in %1 s").arg(outcome->seconds, 0, 'f', 1)
                                          : tr("Stopped at the iteration limit"));
   } else {
-    state_->setText(session_->parts().empty() ? tr("Mesh opened") : tr("Ready to run"));
+    state_->setText(!session_->has_bodies() ? tr("Mesh opened") : tr("Ready to run"));
   }
 }
 
@@ -499,9 +516,11 @@ bool MainWindow::may_drop() {
 
 void MainWindow::add_size(Act kind) {
   const int part = std::max(0, session_->selected());
-  const Part& body = session_->parts()[static_cast<std::size_t>(part)];
-  Vec<3> low = body.surface.points.front(), high = low;
-  for (const Vec<3>& p : body.surface.points) {
+  const Part& body = session_->shapes()[static_cast<std::size_t>(part)];
+  const auto& points = body.surface.points.empty() ? session_->hull().points : body.surface.points;
+  if (points.empty()) return;
+  Vec<3> low = points.front(), high = low;
+  for (const Vec<3>& p : points) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }

@@ -16,6 +16,7 @@ namespace lamella::ui {
 class Banner;
 class Forecaster;
 class ModelView;
+class OverlapPanel;
 class PropertiesPanel;
 class Session;
 class StudyPanel;
@@ -81,6 +82,7 @@ class MainWindow : public QMainWindow {
   PropertiesPanel* properties_ = nullptr;
   QStackedWidget* stack_ = nullptr;
   QTabWidget* results_ = nullptr;
+  OverlapPanel* overlaps_ = nullptr;
   QSplitter* columns_ = nullptr;
   QSplitter* rows_ = nullptr;
   QLabel* counts_ = nullptr;

@@ -21,7 +21,8 @@ inline QColor accent{0x1d, 0x6f, 0xc4};
 inline QColor good{0x2f, 0x85, 0x5a};
 inline QColor warning{0xc0, 0x7a, 0x0b};
 inline QColor danger{0xc5, 0x3a, 0x30};
-inline QColor missing{0xc4, 0xc9, 0xcf};  ///< where a field has no value
+inline QColor surroundings{0xd9, 0xdd, 0xe2};  ///< of what is around the bodies
+inline QColor missing{0xc4, 0xc9, 0xcf};       ///< where a field has no value
 }  // namespace theme
 
 /// Style, palette, font and style sheet of the application; the dark theme is the light one with

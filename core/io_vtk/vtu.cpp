@@ -170,6 +170,14 @@ void take(vtkUnstructuredGrid* grid, VtuContent& out) {
   vtkDataArray* group = grid->GetCellData()->GetArray("group");
   vtkDataArray* face = grid->GetCellData()->GetArray("face");
   vtkDataArray* quality = grid->GetCellData()->GetArray("quality");
+  std::vector<vtkDataArray*> further;
+  for (int a = 0; a < grid->GetCellData()->GetNumberOfArrays(); ++a) {
+    auto* array = vtkDoubleArray::SafeDownCast(grid->GetCellData()->GetAbstractArray(a));
+    if (!array || array->GetNumberOfComponents() != 1 || array == quality || !array->GetName())
+      continue;
+    further.push_back(array);
+    out.of_elements.push_back({array->GetName(), {}});
+  }
   vtkNew<vtkIdList> nodes;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
     const int type = grid->GetCellType(c);
@@ -182,6 +190,8 @@ void take(vtkUnstructuredGrid* grid, VtuContent& out) {
       mesh.elements.push_back(v);
       mesh.element_body.push_back(id_of(body, c, &mesh.bodies));
       if (quality) out.quality.push_back(quality->GetComponent(c, 0));
+      for (std::size_t f = 0; f < further.size(); ++f)
+        out.of_elements[f].values.push_back(further[f]->GetComponent(c, 0));
     } else {
       mesh.facets.push_back({v[0], v[1], v[2]});
       mesh.facet_group.push_back(id_of(group, c, &mesh.groups));

@@ -45,6 +45,8 @@ constexpr Row table[] = {
      QT_TR_NOOP("Stop and keep the best mesh so far")},
     {Act::forecast, QT_TR_NOOP("&Forecast"), "forecast", "F6",
      QT_TR_NOOP("Tell the nodes and the memory to expect, without meshing")},
+    {Act::overlaps, QT_TR_NOOP("Find &overlaps and gaps"), "overlaps", "F7",
+     QT_TR_NOOP("Look where bodies overlap, and where they leave gaps between them")},
     {Act::add_group, QT_TR_NOOP("Add boundary &group"), "group", "G",
      QT_TR_NOOP("Name a part of the boundary: gate, vent, symmetry")},
     {Act::add_sphere, QT_TR_NOOP("Add a &sphere with a size of its own"), "sphere", "", ""},

@@ -23,6 +23,7 @@ enum class Act {
   run,
   cancel,
   forecast,
+  overlaps,
   add_group,
   add_sphere,
   add_box,

@@ -3,6 +3,7 @@
 #include <QCoreApplication>
 #include <algorithm>
 
+#include "core/study/domain.h"
 #include "ui/session/session.h"
 
 namespace lamella::ui {
@@ -112,6 +113,34 @@ void edit_sizing(Session& session, int index, const QString& what,
 void edit_cut(Session& session, int index, const QString& what,
               const std::function<void(CutPlane&)>& change, int merge) {
   change_entry(session, &Study::cuts, index, what, change, merge);
+}
+
+void edit_domain(Session& session, const QString& what, const std::optional<StudyDomain>& domain,
+                 int merge) {
+  Study study = session.study();
+  if (study.domain == domain) return;
+  study.domain = domain;
+  // The only one that one mesh of all bodies knows.
+  if (domain) study.options.detector = Detector::geometric;
+  arrange_bodies(study, session.parts());
+  session.edit(what, std::move(study), merge);
+}
+
+void show_all_bodies(Session& session) {
+  Study study = session.study();
+  const std::size_t around = has_background(study) ? 1 : 0;
+  for (std::size_t k = 0; k + around < study.bodies.size(); ++k) study.bodies[k].visible = true;
+  session.edit(tr("Show all bodies"), std::move(study));
+}
+
+QString domain_title(const StudyDomain& domain) {
+  if (const auto* margin = std::get_if<DomainMargin>(&domain.shape))
+    return tr("Box with a margin of %1 %").arg(100 * margin->share, 0, 'g', 4);
+  if (const auto* body = std::get_if<DomainBody>(&domain.shape))
+    return tr("Inside of %1").arg(QString::fromStdString(body->name));
+  if (std::holds_alternative<ZoneBox>(domain.shape)) return tr("Box");
+  if (std::holds_alternative<ZoneCylinder>(domain.shape)) return tr("Cylinder");
+  return tr("The bodies alone");
 }
 
 void toggle_face(Session& session, int index, const std::string& body, std::int32_t face) {

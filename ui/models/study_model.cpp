@@ -7,13 +7,14 @@
 #include <QSpinBox>
 #include <algorithm>
 
+#include "ui/commands/study_edits.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 
 namespace lamella::ui {
 namespace {
 
-constexpr int sections = 4;
+constexpr int sections = 5;
 
 QString text(const std::string& s) { return QString::fromStdString(s); }
 
@@ -50,14 +51,15 @@ int StudyModel::entries(ItemKind kind) const {
   const Study& study = session_.study();
   switch (kind) {
     case ItemKind::body:
-      // Between a new study and the reset the two lists may differ for a moment.
-      return static_cast<int>(std::min(session_.parts().size(), study.bodies.size()));
+      return static_cast<int>(study.bodies.size());
     case ItemKind::group:
       return static_cast<int>(study.groups.size());
     case ItemKind::sizing:
       return static_cast<int>(study.sizing.size());
     case ItemKind::cut:
       return static_cast<int>(study.cuts.size());
+    case ItemKind::domain:
+      return study.domain ? 1 : 0;
   }
   return 0;
 }
@@ -67,8 +69,6 @@ void StudyModel::follow_study() {
     const QModelIndex parent = section(ItemKind(k));
     int& known = counts_[std::size_t(k)];
     const int now = entries(ItemKind(k));
-    // Bodies change with a reset only.
-    if (ItemKind(k) == ItemKind::body && now != known) continue;
     if (now > known) {
       beginInsertRows(parent, known, now - 1);
       known = now;
@@ -139,6 +139,8 @@ QVariant StudyModel::data(const QModelIndex& index, int role) const {
       return sizing_data(item.index, index.column(), role);
     case ItemKind::cut:
       return cut_data(item.index, index.column(), role);
+    case ItemKind::domain:
+      return domain_data(index.column(), role);
   }
   return {};
 }
@@ -152,7 +154,7 @@ QVariant StudyModel::section_data(ItemKind kind, int column, int role) const {
   }
   if (column != name) return {};
   if (role == Qt::DisplayRole) {
-    const QString titles[] = {tr("Bodies"), tr("Groups"), tr("Sizes"), tr("Cuts")};
+    const QString titles[] = {tr("Bodies"), tr("Groups"), tr("Sizes"), tr("Cuts"), tr("Domain")};
     return titles[int(kind)];
   }
   if (role == Qt::ToolTipRole) {
@@ -160,7 +162,8 @@ QVariant StudyModel::section_data(ItemKind kind, int column, int role) const {
                             tr("Named parts of the boundary (gate, vent, symmetry): they go with\n"
                                "the mesh into the solver"),
                             tr("Places with a size of their own, such as the region of a gate"),
-                            tr("Planes that cut the model open to look inside")};
+                            tr("Planes that cut the model open to look inside"),
+                            tr("What one mesh of all bodies fills")};
     return tips[int(kind)];
   }
   return {};
@@ -172,9 +175,21 @@ QVariant StudyModel::body_data(int row, int column, int role) const {
     if (role == Qt::DisplayRole) return text(body.name);
     if (role == Qt::CheckStateRole) return body.visible ? Qt::Checked : Qt::Unchecked;
     if (role == Qt::DecorationRole) return swatch(session_.color_of(row), false);
+    if (role == Qt::FontRole && !session_.is_part(row)) {
+      QFont font;
+      font.setItalic(true);
+      return font;
+    }
     if (role == Qt::ToolTipRole)
-      return tr("%1\nThe eye shows or hides the body; hidden bodies are meshed too.")
-          .arg(text(body.name));
+      return session_.is_part(row)
+                 ? tr("%1\nThe eye shows or hides the body; hidden bodies are meshed too.")
+                       .arg(text(body.name))
+             : session_.is_zone(row)
+                 ? tr("%1, a body without a file: its shape is a formula.\n"
+                      "It is meshed in one mesh of all bodies.")
+                       .arg(text(body.name))
+                 : tr("What is around the bodies in the domain: it is meshed with them.\n"
+                      "The eye shows it.");
   } else if (column == value) {
     if (role == Qt::DisplayRole) return tr("n %1").arg(body.layers);
     if (role == Qt::EditRole) return body.layers;
@@ -240,6 +255,18 @@ QVariant StudyModel::cut_data(int row, int column, int role) const {
   return {};
 }
 
+QVariant StudyModel::domain_data(int column, int role) const {
+  const Study& study = session_.study();
+  if (role == Qt::ToolTipRole)
+    return tr(
+        "One mesh fills it and carries all bodies.\nThe mesh's properties have its settings.");
+  if (role != Qt::DisplayRole) return {};
+  if (column == name) return domain_title(*study.domain);
+  if (column == value)
+    return study.options.interfaces == Interfaces::fuzzy ? tr("fuzzy") : tr("exact");
+  return {};
+}
+
 QVariant StudyModel::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation != Qt::Horizontal) return {};
   if (role == Qt::TextAlignmentRole)
@@ -256,7 +283,7 @@ Qt::ItemFlags StudyModel::flags(const QModelIndex& index) const {
   const bool checkable = item.kind == ItemKind::body || item.kind == ItemKind::cut;
   if (index.column() == name && checkable) flags |= Qt::ItemIsUserCheckable;
   const int edited = item.kind == ItemKind::body ? value : name;
-  if (index.column() == edited) flags |= Qt::ItemIsEditable;
+  if (index.column() == edited && item.kind != ItemKind::domain) flags |= Qt::ItemIsEditable;
   return flags;
 }
 
@@ -281,7 +308,7 @@ bool StudyModel::setData(const QModelIndex& index, const QVariant& to, int role)
     session_.edit_body(item.index, what.arg(text(body.name)), body);
     return true;
   }
-  if (index.column() != name) return false;
+  if (index.column() != name || item.kind == ItemKind::domain) return false;
   Study study = session_.study();
   if (item.kind == ItemKind::cut && role == Qt::CheckStateRole) {
     CutPlane& cut = study.cuts[std::size_t(item.index)];

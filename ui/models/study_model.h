@@ -10,7 +10,8 @@ namespace lamella::ui {
 
 class Session;
 
-/// The study as a tree of two floors: bodies, groups, sizes and cuts, each with its entries.
+/// The study as a tree of two floors: bodies, groups, sizes, cuts and the domain, each with its
+/// entries.
 /// Visibility, layers and names can be edited.
 class StudyModel : public QAbstractItemModel {
   Q_OBJECT
@@ -43,10 +44,11 @@ class StudyModel : public QAbstractItemModel {
   QVariant group_data(int row, int column, int role) const;
   QVariant sizing_data(int row, int column, int role) const;
   QVariant cut_data(int row, int column, int role) const;
+  QVariant domain_data(int column, int role) const;
   const BodyOutcome* outcome(int row) const;
 
   Session& session_;
-  std::array<int, 4> counts_{};  // as the views know them
+  std::array<int, 5> counts_{};  // as the views know them
 };
 
 /// Editors of StudyModel's cells.

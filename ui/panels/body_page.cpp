@@ -19,6 +19,7 @@ constexpr double first_alpha2 = 4;
 QString short_length(double mm) { return QString::number(mm, 'g', 3); }
 
 QString size_text(const Part& part) {
+  if (part.surface.points.empty()) return {};
   Vec<3> low = Vec<3>::Zero();
   Vec<3> high = Vec<3>::Zero();
   if (!part.surface.points.empty()) low = high = part.surface.points.front();
@@ -67,6 +68,11 @@ BodyPage::BodyPage(Session& session, QWidget* parent) : QWidget(parent), session
   form->add(tr("Smallest size"), h_min_);
   h_max_ = length_box("h_max", tr("No element is asked to be longer. Empty: no bound"));
   form->add(tr("Largest size"), h_max_);
+  interface_ = length_box("interface_size",
+                          tr("Across the borders of the body in one mesh of all bodies; of two\n"
+                             "bodies the smaller counts. Empty: automatic"));
+  form->add(tr("Interface size"), interface_);
+  rows_ = form;
   layout->addLayout(form);
 
   more_ = new Folded(tr("Width and length"));
@@ -108,6 +114,10 @@ void BodyPage::connect_boxes() {
       if (b.h_min && h) b.h_min = std::min(*b.h_min, *h);
     });
   });
+  connect(interface_, &QDoubleSpinBox::valueChanged, this, [this] {
+    const auto h = interface_->length();
+    session_.edit_selection(tr("Interface size"), [h](BodySettings& b) { b.interface_size = h; });
+  });
   connect(layers2_, &QSpinBox::valueChanged, this, [this](int n) {
     if (n < 0) return;
     session_.edit_selection(tr("n2"), [n](BodySettings& b) {
@@ -147,14 +157,16 @@ void BodyPage::show_details() {
   }
   if (chosen.size() > 1) {
     double volume = 0;
-    for (const int k : chosen) volume += session_.parts()[static_cast<std::size_t>(k)].cad_volume;
+    for (const int k : chosen) volume += session_.shapes()[static_cast<std::size_t>(k)].cad_volume;
     title_->setText(tr("%1 bodies").arg(chosen.size()));
     details_->setText(tr("Volume %L1 mm³").arg(volume, 0, 'f', 1));
     return;
   }
-  const Part& part = session_.parts()[static_cast<std::size_t>(chosen.front())];
+  const Part& part = session_.shapes()[static_cast<std::size_t>(chosen.front())];
   title_->setText(QString::fromStdString(part.name));
-  QString text = size_text(part);
+  QString text = session_.is_part(chosen.front())   ? size_text(part)
+                 : session_.is_zone(chosen.front()) ? tr("A body by formula<br>") + size_text(part)
+                                                    : tr("What is around the bodies in the domain");
   for (const std::string& note : part.notes)
     text += "<br>" + QString::fromStdString(note).toHtmlEscaped();
   details_->setText(text);
@@ -173,6 +185,18 @@ void BodyPage::show_automatic() {
           : tr("automatic: %1 to %2 mm").arg(short_length(low), short_length(high)),
       low);
   h_max_->set_automatic(tr("no bound"), 200 * low);
+  // A run has found out what automatic means.
+  QString automatic = tr("automatic: 1/4 of a layer");
+  double start = low;
+  const auto& outcome = session_.outcome();
+  if (outcome && session_.selection().size() == 1)
+    for (const BodyOutcome& made : outcome->bodies)
+      if (made.name == session_.body(session_.selection().front()).name &&
+          made.interface_size > 0 && !session_.body(session_.selection().front()).interface_size) {
+        start = made.interface_size;
+        automatic = tr("automatic: %1 mm").arg(short_length(start));
+      }
+  interface_->set_automatic(automatic, start);
 }
 
 void BodyPage::refresh() {
@@ -183,7 +207,7 @@ void BodyPage::refresh() {
   const QSignalBlocker block[] = {QSignalBlocker(layers_),  QSignalBlocker(alpha_),
                                   QSignalBlocker(h_min_),   QSignalBlocker(h_max_),
                                   QSignalBlocker(layers2_), QSignalBlocker(alpha2_),
-                                  QSignalBlocker(layers3_)};
+                                  QSignalBlocker(layers3_), QSignalBlocker(interface_)};
   show_automatic();
   const BodySettings& first = session_.body(chosen.front());
   const auto differs = [&](auto&& value) {
@@ -216,6 +240,10 @@ void BodyPage::refresh() {
   const bool mixed_max = differs([](const BodySettings& b) { return b.h_max; });
   if (mixed_max) h_max_->setSpecialValueText(tr("different"));
   h_max_->set_length(mixed_max ? std::nullopt : first.h_max);
+  rows_->setRowVisible(interface_, session_.study().domain.has_value());
+  const bool mixed_size = differs([](const BodySettings& b) { return b.interface_size; });
+  if (mixed_size) interface_->setSpecialValueText(tr("different"));
+  interface_->set_length(mixed_size ? std::nullopt : first.interface_size);
 }
 
 }  // namespace lamella::ui

@@ -6,6 +6,7 @@
 #include "core/study/study.h"
 
 class QDoubleSpinBox;
+class QFormLayout;
 class QLabel;
 class QPushButton;
 class QSpinBox;
@@ -36,6 +37,8 @@ class BodyPage : public QWidget {
   QDoubleSpinBox* alpha_;
   LengthBox* h_min_;
   LengthBox* h_max_;
+  LengthBox* interface_;
+  QFormLayout* rows_;
   Folded* more_;
   QSpinBox* layers2_;
   QDoubleSpinBox* alpha2_;

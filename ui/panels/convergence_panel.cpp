@@ -38,10 +38,15 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   conformity_->set_decimals(3);
   // The first mesh knows nothing of the metric: orders of magnitude lie between it and the rest.
   conformity_->set_logarithmic(true);
-  for (Plot* plot : {nodes_, layers_, conformity_}) {
+  error_ = new Plot(tr("Interface error (L2)"));
+  error_->setObjectName("error_plot");
+  error_->setToolTip(tr("Of the filling ratio, relative to the body: the largest of all bodies"));
+  error_->set_decimals(4);
+  error_->set_logarithmic(true);
+  for (Plot* plot : {nodes_, layers_, conformity_, error_}) {
     plots->addWidget(plot, 1);
     connect(plot, &Plot::clicked, &session, &Session::show_iteration);
-    for (Plot* other : {nodes_, layers_, conformity_})
+    for (Plot* other : {nodes_, layers_, conformity_, error_})
       if (other != plot) connect(plot, &Plot::hovered, other, &Plot::set_hovered);
   }
   layout->addLayout(plots, 1);
@@ -87,6 +92,9 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   connect(&session, &Session::iterations_changed, this, &ConvergencePanel::follow_iterations);
   connect(&session, &Session::selection_changed, this, &ConvergencePanel::follow_iterations);
   connect(&session, &Session::run_finished, this, &ConvergencePanel::follow_iterations);
+  connect(&session, &Session::study_changed, this, [this] {
+    if (session_.study().domain.has_value() == error_->isHidden()) follow_iterations();
+  });
   connect(&session, &Session::shown_changed, this, &ConvergencePanel::follow_shown);
   follow_iterations();
 }
@@ -94,7 +102,7 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
 QString ConvergencePanel::csv() const {
   QString text =
       "iteration,nodes,elements,layers_mean,layers_p5,conformity,quality_min,quality_mean,"
-      "unit_edges,seconds\n";
+      "unit_edges,seconds,mixed,interface_error\n";
   const auto number = [](double x) { return QString::number(x, 'g', 12); };
   for (const Iteration& it : session_.iterations()) {
     const IterationRecord& r = it.record;
@@ -102,7 +110,8 @@ QString ConvergencePanel::csv() const {
                         QString::number(r.elements),  number(r.layers.mean),
                         number(r.layers.p5),          number(r.conformity),
                         number(r.quality_min),        number(r.quality_mean),
-                        number(r.unit_edges),         number(r.seconds)}
+                        number(r.unit_edges),         number(r.seconds),
+                        QString::number(r.mixed),     number(r.interface_error)}
                 .join(',') +
             '\n';
   }
@@ -124,15 +133,25 @@ void ConvergencePanel::follow_iterations() {
   Series mean{tr("mean"), blue, {}};
   Series low{tr("5 % quantile"), amber, {}};
   Series conformity{tr("conformity"), blue, {}};
+  Series mixed{tr("mixed elements"), amber, {}};
+  Series error{tr("interface error"), blue, {}};
   for (const Iteration& it : session_.iterations()) {
     const bool measured = it.record.layers.places > 0;
     nodes.values.push_back(static_cast<double>(it.record.nodes));
     mean.values.push_back(measured ? it.record.layers.mean : std::nan(""));
     low.values.push_back(measured ? it.record.layers.p5 : std::nan(""));
     conformity.values.push_back(it.record.conformity);
+    // Without mixed elements every border lies on faces of the mesh.
+    const bool fuzzy = it.record.mixed > 0;
+    mixed.values.push_back(fuzzy ? static_cast<double>(it.record.mixed) : std::nan(""));
+    error.values.push_back(fuzzy ? it.record.interface_error : std::nan(""));
   }
-  nodes_->set_series({nodes});
+  const bool domain = session_.study().domain.has_value();
+  nodes_->set_title(domain ? QString() : tr("Nodes"));
+  nodes_->set_series(domain ? std::vector{nodes, mixed} : std::vector{nodes});
   conformity_->set_series({conformity});
+  error_->set_series({error});
+  error_->setVisible(domain);
   show_layers(mean, low);
   const QSignalBlocker block(slider_);
   slider_->setRange(0, std::max(0, static_cast<int>(session_.iterations().size()) - 1));
@@ -154,7 +173,8 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
     for (const BodyOutcome& made : outcome ? outcome->bodies : std::vector<BodyOutcome>{}) {
       if (made.name != body.name) continue;
       asked = made.layers_asked;
-      if (bodies.size() < 2 || made.records.empty()) continue;
+      // One mesh of all bodies has one record.
+      if (bodies.size() < 2 || made.records.empty() || session_.study().domain) continue;
       title = tr("Layers, %1").arg(QString::fromStdString(made.name));
       for (std::size_t k = 0; k < mean.values.size(); ++k) {
         const LayerStats& stats = made.records[std::min(k, made.records.size() - 1)].layers;
@@ -162,6 +182,11 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
         low.values[k] = stats.places > 0 ? stats.p5 : std::nan("");
       }
     }
+  }
+  // Four plots leave little room.
+  if (session_.study().domain) {
+    title = tr("Layers");
+    low.name = tr("5 %");
   }
   layers_->set_title(title);
   layers_->set_series({mean, low});
@@ -171,7 +196,7 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
 void ConvergencePanel::follow_shown() {
   const int shown = session_.shown();
   const int last = static_cast<int>(session_.iterations().size()) - 1;
-  for (Plot* plot : {nodes_, layers_, conformity_}) plot->set_marked(shown);
+  for (Plot* plot : {nodes_, layers_, conformity_, error_}) plot->set_marked(shown);
   const QSignalBlocker block(slider_);
   slider_->setEnabled(last > 0);
   back_->setEnabled(shown > 0);
@@ -182,9 +207,9 @@ void ConvergencePanel::follow_shown() {
   }
   slider_->setValue(shown);
   const IterationRecord& record = session_.iterations()[shown].record;
-  QString text = session_.parts().empty() ? tr("opened mesh")
-                 : record.iteration == 0  ? tr("0: first mesh")
-                                          : QString::number(record.iteration);
+  QString text = !session_.has_bodies()  ? tr("opened mesh")
+                 : record.iteration == 0 ? tr("0: first mesh")
+                                         : QString::number(record.iteration);
   if (shown == last && last > 0) text += tr("  (latest)");
   position_->setText(text);
 }

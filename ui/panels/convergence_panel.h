@@ -12,7 +12,8 @@ namespace lamella::ui {
 
 class Session;
 
-/// Nodes, layers and conformity over the iterations, live, and the slider that looks back.
+/// Nodes, layers, conformity and errors at interfaces over the iterations, live, and the slider
+/// that looks back.
 class ConvergencePanel : public QWidget {
   Q_OBJECT
 
@@ -32,6 +33,7 @@ class ConvergencePanel : public QWidget {
   Plot* nodes_;
   Plot* layers_;
   Plot* conformity_;
+  Plot* error_;  // at the borders of one mesh of all bodies
   QSlider* slider_;
   QLabel* position_;
   QToolButton* back_;

@@ -62,7 +62,7 @@ Form::Form() {
 
 void Form::add(const QString& text, QWidget* field) {
   auto* l = new QLabel(text);
-  l->setMinimumWidth(104);
+  l->setMinimumWidth(110);
   l->setToolTip(field->toolTip());
   l->setBuddy(field);
   field->setAccessibleName(text);

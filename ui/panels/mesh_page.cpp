@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/geometry/triangles.h"
+#include "ui/panels/domain_form.h"
 #include "ui/panels/form.h"
 #include "ui/session/session.h"
 
@@ -14,7 +16,9 @@ MeshPage::MeshPage(Session& session, QWidget* parent) : QWidget(parent), session
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(8);
-  layout->addWidget(styled_label(tr("Mesh of all bodies"), "section_title"));
+  layout->addWidget(styled_label(tr("Mesh"), "section_title"));
+  domain_ = new DomainForm(session);
+  layout->addWidget(domain_);
   auto* form = new Form;
   chord_ =
       length_box("chord_tolerance", tr("The boundary of the mesh stays this close to the part.\n"
@@ -96,9 +100,15 @@ void MeshPage::refresh() {
                                   QSignalBlocker(settled_),  QSignalBlocker(progressive_),
                                   QSignalBlocker(detector_), QSignalBlocker(seed_),
                                   QSignalBlocker(threads_),  QSignalBlocker(memory_)};
+  domain_->refresh();
+  const bool one = session_.study().domain.has_value();
   double low = std::numeric_limits<double>::max();
   double high = 0;
-  for (int k = 0; k < static_cast<int>(session_.parts().size()); ++k) {
+  for (int k = 0; k < static_cast<int>(session_.shapes().size()); ++k) {
+    // One mesh of all bodies has the tolerance of its domain.
+    if (one && !session_.hull().points.empty())
+      low = high = 1e-3 * diagonal_of(session_.hull().points);
+    if (session_.shapes()[std::size_t(k)].surface.points.empty() || low == high) continue;
     low = std::min(low, session_.automatic_size(k));
     high = std::max(high, session_.automatic_size(k));
   }
@@ -113,6 +123,9 @@ void MeshPage::refresh() {
   iterations_->setValue(o.iterations);
   settled_->setChecked(o.until_settled);
   progressive_->setChecked(o.progressive);
+  // Of no use to one mesh of all bodies.
+  progressive_->setEnabled(!one);
+  detector_->setEnabled(!one);
   detector_->setCurrentIndex(detector_->findData(int(o.detector)));
   seed_->setValue(
       static_cast<int>(std::min<std::uint64_t>(o.seed, std::numeric_limits<int>::max())));

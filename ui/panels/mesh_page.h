@@ -9,11 +9,13 @@ class QSpinBox;
 
 namespace lamella::ui {
 
+class DomainForm;
 class Folded;
 class LengthBox;
 class Session;
 
-/// How the study is meshed: tolerance, iterations, and what is rarely changed folded away.
+/// How the study is meshed: one mesh or several, tolerance, iterations, and what is rarely changed
+/// folded away.
 class MeshPage : public QWidget {
   Q_OBJECT
 
@@ -23,6 +25,7 @@ class MeshPage : public QWidget {
 
  private:
   Session& session_;
+  DomainForm* domain_;
   LengthBox* chord_;
   QSpinBox* iterations_;
   Folded* more_;

@@ -7,6 +7,7 @@
 
 #include "ui/panels/body_page.h"
 #include "ui/panels/cut_page.h"
+#include "ui/panels/domain_page.h"
 #include "ui/panels/group_page.h"
 #include "ui/panels/mesh_page.h"
 #include "ui/panels/sizing_page.h"
@@ -36,7 +37,8 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
   group_ = new GroupPage(session, actions);
   sizing_ = new SizingPage(session, forecaster);
   cut_ = new CutPage(session);
-  for (QWidget* page : std::initializer_list<QWidget*>{body_, group_, sizing_, cut_})
+  domain_ = new DomainPage(session);
+  for (QWidget* page : std::initializer_list<QWidget*>{body_, group_, sizing_, cut_, domain_})
     pages_->addWidget(page);
   mesh_ = new MeshPage(session);
   layout->addWidget(pages_, 1);
@@ -56,15 +58,14 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
 }
 
 void PropertiesPanel::refresh() {
-  scroll_->setVisible(!session_.parts().empty());
-  empty_->setVisible(session_.parts().empty());
-  // Between a new study and its parts the two lists may differ for a moment.
-  if (session_.study().bodies.size() != session_.parts().size()) return;
+  scroll_->setVisible(session_.has_bodies());
+  empty_->setVisible(!session_.has_bodies());
   pages_->setCurrentIndex(static_cast<int>(session_.item().kind));
   body_->refresh();
   group_->refresh();
   sizing_->refresh();
   cut_->refresh();
+  domain_->refresh();
   mesh_->refresh();
 }
 

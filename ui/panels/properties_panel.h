@@ -10,6 +10,7 @@ namespace lamella::ui {
 class Actions;
 class BodyPage;
 class CutPage;
+class DomainPage;
 class Forecaster;
 class GroupPage;
 class MeshPage;
@@ -36,6 +37,7 @@ class PropertiesPanel : public QFrame {
   GroupPage* group_;
   SizingPage* sizing_;
   CutPage* cut_;
+  DomainPage* domain_;
   MeshPage* mesh_;
 };
 

@@ -64,12 +64,16 @@ void ReportPanel::refresh() {
     html += cell(tr("%1 %").arg(body.layers.share_reached * 100, 0, 'f', 1));
     html += cell(QString("%L1").arg(body.mesh_volume, 0, 'f', 1));
     html += cell(tr("%1 %").arg(off, 0, 'f', 3));
-    html += cell(tr("%1 of %2 mm")
-                     .arg(body.boundary_distance.largest(), 0, 'g', 3)
-                     .arg(body.chord_tolerance, 0, 'g', 3));
+    // Fuzzy borders have no faces that could be off.
+    const bool fuzzy = body.interface_size > 0;
+    html += cell(fuzzy ? tr("–")
+                       : tr("%1 of %2 mm")
+                             .arg(body.boundary_distance.largest(), 0, 'g', 3)
+                             .arg(body.chord_tolerance, 0, 'g', 3));
     html += cell(QString::fromStdString(body.first_mesh_by).toHtmlEscaped()) + "</tr>";
   }
   html += "</table>";
+  html += interfaces_html();
   for (const BodyOutcome& body : outcome->bodies)
     for (const std::string& note : body.notes)
       html += "<table width='760'><tr><td style='color:" + theme::soft_text.name() + "'>" +
@@ -77,6 +81,23 @@ void ReportPanel::refresh() {
               "</td></tr></table>";
   html += places_html();
   setHtml(html);
+}
+
+QString ReportPanel::interfaces_html() const {
+  const Outcome& outcome = *session_.outcome();
+  if (outcome.records.empty() || outcome.records.back().mixed == 0) return {};
+  const IterationRecord& last = outcome.records.back();
+  QString html = "<p><b>" +
+                 tr("%L1 of %L2 elements are mixed: filled in part by several bodies")
+                     .arg(last.mixed)
+                     .arg(last.elements) +
+                 "</b></p><table cellspacing='0'>";
+  for (const BodyOutcome& body : outcome.bodies)
+    html += "<tr><td style='padding: 4px 12px 4px 0'>" +
+            QString::fromStdString(body.name).toHtmlEscaped() + "</td>" +
+            cell(tr("interface error %1 %").arg(100 * body.interface_error, 0, 'f', 2)) +
+            cell(tr("%1 mm across its borders").arg(body.interface_size, 0, 'g', 3)) + "</tr>";
+  return html + "</table>";
 }
 
 QString ReportPanel::places_html() const {

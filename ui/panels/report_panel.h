@@ -15,6 +15,8 @@ class ReportPanel : public QTextBrowser {
 
  private:
   void refresh();
+  /// Of fuzzy interfaces: mixed elements and what the borders are worth.
+  QString interfaces_html() const;
   QString places_html() const;
   /// Follows a link to a place with too few layers.
   void jump(const QUrl& link);

@@ -100,7 +100,7 @@ void SizingPage::make_asked(Form* form) {
       auto& c = std::get<SizeCorrection>(o.asks);
       const bool size = asks_->currentIndex() == 0;
       // The smallest size of the body is a start that is fine, and is seen.
-      const double start = session_.parts().empty() ? 1 : 20 * session_.automatic_size(0);
+      const double start = session_.has_bodies() ? 20 * session_.automatic_size(0) : 1;
       c.size = size ? std::optional(start) : std::nullopt;
       c.factor = size ? std::nullopt : std::optional(0.5);
     });
@@ -149,9 +149,9 @@ void SizingPage::refresh() {
                                   QSignalBlocker(directions_)};
   name_->setText(QString::fromStdString(object.name));
   body_->clear();
-  if (!std::holds_alternative<FacesShape>(object.shape) || session_.parts().size() == 1)
+  if (!std::holds_alternative<FacesShape>(object.shape) || session_.shapes().size() == 1)
     body_->addItem(tr("all bodies"), QString());
-  for (const Part& part : session_.parts())
+  for (const Part& part : session_.shapes())
     body_->addItem(QString::fromStdString(part.name), QString::fromStdString(part.name));
   body_->setCurrentIndex(body_->findData(QString::fromStdString(object.body)));
   show_shape(object.shape);

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "ui/actions/actions.h"
+#include "ui/commands/study_edits.h"
 #include "ui/models/study_model.h"
 #include "ui/panels/form.h"
 #include "ui/session/session.h"
@@ -84,9 +85,16 @@ void StudyPanel::make_tree() {
     tree_->header()->setSectionResizeMode(column, QHeaderView::Fixed);
     tree_->setColumnWidth(column, width);
   }
-  tree_->expandAll();
-  connect(model_, &QAbstractItemModel::modelReset, tree_, &QTreeView::expandAll);
-  connect(model_, &QAbstractItemModel::rowsInserted, tree_, &QTreeView::expandAll);
+  // Most studies have no domain: its row comes with it.
+  const auto expand = [this] {
+    tree_->expandAll();
+    const QModelIndex domain = model_->section(ItemKind::domain);
+    tree_->setRowHidden(domain.row(), {}, model_->rowCount(domain) == 0);
+  };
+  expand();
+  connect(model_, &QAbstractItemModel::modelReset, this, expand);
+  connect(model_, &QAbstractItemModel::rowsInserted, this, expand);
+  connect(model_, &QAbstractItemModel::rowsRemoved, this, expand);
   connect(tree_, &QWidget::customContextMenuRequested, this, &StudyPanel::context_menu);
 }
 
@@ -126,13 +134,12 @@ void StudyPanel::follow_selection() {
 }
 
 void StudyPanel::show_bodies(bool only_selected) {
+  if (!only_selected) return show_all_bodies(session_);
   Study study = session_.study();
   const auto& chosen = session_.selection();
   for (std::size_t k = 0; k < study.bodies.size(); ++k)
-    study.bodies[k].visible =
-        !only_selected || std::find(chosen.begin(), chosen.end(), int(k)) != chosen.end();
-  session_.edit(only_selected ? tr("Show only the selection") : tr("Show all bodies"),
-                std::move(study));
+    study.bodies[k].visible = std::find(chosen.begin(), chosen.end(), int(k)) != chosen.end();
+  session_.edit(tr("Show only the selection"), std::move(study));
 }
 
 void StudyPanel::fill_body_menu(QMenu& menu) {
@@ -181,6 +188,10 @@ void StudyPanel::context_menu(const QPoint& at) {
       if (item.index < 0) break;
       menu.addAction(actions_[Act::flip]);
       rename();
+      menu.addAction(actions_[Act::remove]);
+      break;
+    case ItemKind::domain:
+      menu.addAction(actions_[Act::overlaps]);
       menu.addAction(actions_[Act::remove]);
       break;
   }

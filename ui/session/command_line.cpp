@@ -4,6 +4,9 @@
 #include <charconv>
 #include <filesystem>
 
+#include "core/study/domain.h"
+#include "core/study/request.h"
+
 namespace lamella::ui {
 namespace {
 
@@ -36,7 +39,8 @@ Error cannot(const std::string& what) {
 
 bool same(const BodySettings& a, const BodySettings& b) {
   return a.layers == b.layers && a.alpha == b.alpha && a.h_min == b.h_min && a.h_max == b.h_max &&
-         a.layers2 == b.layers2 && a.alpha2 == b.alpha2 && a.layers3 == b.layers3;
+         a.layers2 == b.layers2 && a.alpha2 == b.alpha2 && a.layers3 == b.layers3 &&
+         a.interface_size == b.interface_size;
 }
 
 Result<std::string> sizing_options(const Study& study) {
@@ -78,6 +82,28 @@ Result<std::string> sizing_options(const Study& study) {
   return text;
 }
 
+std::string domain_options(const Study& study) {
+  if (!study.domain) return {};
+  std::string text = " --domain ";
+  const auto& shape = study.domain->shape;
+  if (const auto* box = std::get_if<ZoneBox>(&shape))
+    text += "box=" + numbers(box->low) + ',' + numbers(box->high);
+  else if (const auto* c = std::get_if<ZoneCylinder>(&shape))
+    text += "cylinder=" + numbers(c->from) + ',' + numbers(c->to) + ',' + number(c->radius);
+  else if (const auto* margin = std::get_if<DomainMargin>(&shape))
+    text += "margin=" + number(margin->share);
+  else if (const auto* body = std::get_if<DomainBody>(&shape))
+    text += quoted("body=" + body->name);
+  else
+    text += "bodies";
+  const StudyOptions& o = study.options;
+  const StudyOptions usual;
+  if (o.interfaces != usual.interfaces)
+    text += " --interfaces " + std::string(interfaces_name(o.interfaces));
+  if (o.capture != usual.capture) text += " --capture " + std::string(capture_name(o.capture));
+  return text;
+}
+
 Result<std::string> group_options(const Study& study) {
   std::string text;
   for (const BoundaryGroup& group : study.groups) {
@@ -107,8 +133,16 @@ Result<std::string> command_line(const Study& study) {
   const std::pair<double, const char*> units[] = {{10, "cm"}, {1000, "m"}, {25.4, "inch"}};
   for (const auto& [mm, name] : units)
     if (unit == mm) text += std::string(" --unit ") + name;
-  for (const BodySettings& body : study.bodies)
-    if (!same(body, study.bodies.front())) return cannot("settings that differ between bodies");
+  if (!study.zones.empty()) return cannot("bodies by formula");
+  for (const BodySettings& body : study.bodies) {
+    // What is around the bodies has settings of its own, which no option says.
+    const bool around = has_background(study) && body.name == kBackground;
+    Study plain;
+    plain.domain = study.domain;
+    arrange_bodies(plain, {});
+    if (!same(body, around ? plain.bodies.front() : study.bodies.front()))
+      return cannot(around ? "settings of the background" : "settings that differ between bodies");
+  }
   const BodySettings body = study.bodies.empty() ? BodySettings{} : study.bodies.front();
   text += " -n " + std::to_string(body.layers);
   if (body.alpha != BodySettings{}.alpha) text += " --alpha " + number(body.alpha);
@@ -117,6 +151,9 @@ Result<std::string> command_line(const Study& study) {
   if (body.layers3) text += " --layers3 " + std::to_string(*body.layers3);
   if (body.h_min) text += " --h-min " + number(*body.h_min);
   if (body.h_max) text += " --h-max " + number(*body.h_max);
+  if (body.interface_size && study.domain)
+    text += " --interface-size " + number(*body.interface_size);
+  text += domain_options(study);
   const StudyOptions& o = study.options;
   const StudyOptions usual;
   if (o.chord_tolerance) text += " --chord-tolerance " + number(*o.chord_tolerance);

@@ -60,8 +60,8 @@ void Forecaster::ask() {
 
 void Forecaster::follow() {
   if (!session_.services().forecast || session_.parts().empty()) return;
-  if (session_.study().bodies.size() != session_.parts().size()) return;
-  if (!asked_ && session_.study().sizing.empty()) {
+  // One mesh of all bodies is not forecast.
+  if (session_.study().domain || (!asked_ && session_.study().sizing.empty())) {
     if (bodies_) {
       bodies_.reset();
       known_for_.clear();
@@ -77,7 +77,7 @@ void Forecaster::follow() {
 }
 
 void Forecaster::start() {
-  if (!session_.services().forecast || session_.parts().empty() ||
+  if (!session_.services().forecast || session_.parts().empty() || session_.study().domain ||
       session_.activity() != Activity::idle)
     return;
   if (worker_.busy()) {
@@ -132,6 +132,7 @@ MeshForecast Forecaster::total() const {
 }
 
 QString Forecaster::description() const {
+  if (session_.study().domain) return tr("Not known for one mesh of all bodies.");
   if (worker_.busy()) return tr("Counting…");
   if (!failure_.isEmpty()) return failure_;
   if (!bodies_) return tr("Not known yet.");

@@ -6,6 +6,7 @@
 #include "core/geometry/triangles.h"
 #include "core/study/study_file.h"
 #include "ui/commands/edit_study.h"
+#include "ui/commands/study_edits.h"
 #include "ui/theme.h"
 
 namespace lamella::ui {
@@ -72,6 +73,8 @@ Session::Session(Services services, QObject* parent)
     const bool known = fraction > 0.02 && elapsed > 1;
     Q_EMIT progressed(fraction, phase, known ? elapsed * (1 - fraction) / fraction : -1);
   });
+  // Bodies that changed meanwhile.
+  connect(&shaper_, &Worker::finished, this, &Session::take_zone_shapes);
 }
 
 QColor Session::color_of(int index) const {
@@ -79,6 +82,7 @@ QColor Session::color_of(int index) const {
   if (const auto& own = study_->bodies[k].color)
     return QColor::fromRgbF(static_cast<float>((*own)[0]), static_cast<float>((*own)[1]),
                             static_cast<float>((*own)[2]));
+  if (has_background(*study_) && k + 1 == study_->bodies.size()) return theme::surroundings;
   return body_color(index,
                     k < parts_->size() ? (*parts_)[k].color : std::array<double, 3>{-1, -1, -1});
 }
@@ -105,7 +109,8 @@ void Session::select(int part) {
 
 void Session::select(std::vector<int> parts, int current) {
   std::sort(parts.begin(), parts.end());
-  std::erase_if(parts, [&](int p) { return p < 0 || p >= static_cast<int>(parts_->size()); });
+  std::erase_if(parts,
+                [&](int p) { return p < 0 || p >= static_cast<int>(study_->bodies.size()); });
   if (std::find(parts.begin(), parts.end(), current) == parts.end())
     current = parts.empty() ? -1 : parts.back();
   if (parts == selection_ && current == selected_ && !item_) return;
@@ -124,7 +129,8 @@ Item Session::item() const {
   const bool there = item.kind == ItemKind::body     ? true
                      : item.kind == ItemKind::group  ? within(study_->groups.size())
                      : item.kind == ItemKind::sizing ? within(study_->sizing.size())
-                                                     : within(study_->cuts.size());
+                     : item.kind == ItemKind::cut    ? within(study_->cuts.size())
+                                                     : within(study_->domain ? 1 : 0);
   return there ? item : Item{ItemKind::body, selected_};
 }
 
@@ -135,13 +141,18 @@ void Session::select_item(const Item& item) {
   Q_EMIT selection_changed();
 }
 
-double Session::automatic_size(int part) const {
-  return 1e-3 * diagonal_of((*parts_)[static_cast<std::size_t>(part)].surface.points);
+double Session::automatic_size(int body) const {
+  const auto& points = (*shapes_)[static_cast<std::size_t>(body)].surface.points;
+  return 1e-3 * diagonal_of(points.empty() ? hull_.points : points);
 }
 
 void Session::set_study(std::shared_ptr<const Study> study) {
   study_ = std::move(study);
+  const std::vector<int> before = selection_;
+  // What draws the bodies must have them before it hears of their settings.
+  if (follow_bodies()) Q_EMIT surfaces_changed();
   Q_EMIT study_changed();
+  if (before != selection_) Q_EMIT selection_changed();
 }
 
 void Session::set_activity(Activity activity) {
@@ -288,7 +299,7 @@ void Session::save(const std::filesystem::path& file) {
   Q_EMIT study_changed();
   const auto state = outdated() ? nullptr : shown_state();
   const std::filesystem::path mesh = mesh_beside(file);
-  if (!state || parts_->empty()) {
+  if (!state || !has_bodies()) {
     // A mesh of other settings must not be taken for this study's, nor be lost.
     std::error_code ec;
     if (std::filesystem::is_regular_file(mesh, ec)) {
@@ -313,7 +324,7 @@ void Session::save(const std::filesystem::path& file) {
 }
 
 bool Session::modified() const {
-  if (parts_->empty()) return false;
+  if (!has_bodies()) return false;
   if (compared_ != study_) {
     compared_ = study_;
     differs_ = study_to_json(*study_) != saved_;
@@ -370,7 +381,9 @@ void Session::take_parts(ReadParts read, const std::vector<StudyInput>& inputs, 
   const std::size_t first_new = all.parts.size();
   for (Part& part : read.parts) all.parts.push_back(std::move(part));
   all.sources.insert(all.sources.end(), read.sources.begin(), read.sources.end());
-  name_parts(all, first_new, study.left_out, false);
+  std::vector<std::string> taken = study.left_out;
+  for (const StudyZone& zone : study.zones) taken.push_back(zone.name);
+  name_parts(all, first_new, taken, false);
   study.inputs.insert(study.inputs.end(), inputs.begin(), inputs.end());
   const std::filesystem::path file = add ? file_ : std::filesystem::path();
   const std::string saved = saved_;
@@ -383,12 +396,7 @@ void Session::take_parts(ReadParts read, const std::vector<StudyInput>& inputs, 
 }
 
 void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
-  std::vector<BodySettings> bodies;
-  for (const Part& part : read.parts) {
-    bodies.push_back(settings_of(study, part.name));
-    bodies.back().name = part.name;
-  }
-  study.bodies = std::move(bodies);
+  arrange_bodies(study, read.parts);
   for (std::size_t k = first_new; k < read.parts.size(); ++k) {
     const Part& part = read.parts[k];
     Q_EMIT logged(tr("%1: %2, %3 triangles on %4 faces, volume %L5 mm³")
@@ -398,7 +406,6 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
                       .arg(part.cad_volume, 0, 'f', 1));
     for (const std::string& note : part.notes) Q_EMIT logged(text(part.name + ": " + note));
   }
-  const bool any = !read.parts.empty();
   parts_ = std::make_shared<const std::vector<Part>>(std::move(read.parts));
   sources_ = std::move(read.sources);
   selected_ = -1;
@@ -408,10 +415,13 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
   undo_.clear();
   saved_ = study_to_json(study);
   compared_.reset();
+  study_ = std::make_shared<const Study>(std::move(study));
+  follow_bodies();
   clear_iterations();
-  set_study(std::make_shared<Study>(std::move(study)));
+  // What shows the parts has to have them before it hears of their settings.
   Q_EMIT parts_changed();
-  select(any ? static_cast<int>(first_new) : -1);
+  Q_EMIT study_changed();
+  select(has_bodies() ? static_cast<int>(first_new) : -1);
 }
 
 void Session::remove_part(int index) {
@@ -425,7 +435,9 @@ void Session::remove_part(int index) {
   study.left_out.push_back(name);
   std::erase_if(study.groups, [&](const BoundaryGroup& group) { return group.body == name; });
   std::erase_if(study.sizing, [&](const SizingObject& object) { return object.body == name; });
-  if (rest.parts.empty()) study = Study{};
+  if (study.domain && study.domain->shape == decltype(study.domain->shape){DomainBody{name}})
+    study.domain = StudyDomain{DomainBodies{}};
+  if (rest.parts.empty() && study.zones.empty()) study = Study{};
   const std::filesystem::path file = rest.parts.empty() ? std::filesystem::path() : file_;
   const std::string saved = saved_;
   const std::size_t all = rest.parts.size();
@@ -433,11 +445,13 @@ void Session::remove_part(int index) {
   file_ = file;
   saved_ = saved;
   compared_.reset();
-  select(std::min(index, static_cast<int>(all) - 1));
+  select(std::min(index, static_cast<int>(study_->bodies.size()) - 1));
 }
 
 void Session::remove_item(const Item& item) {
-  if (item.kind == ItemKind::body) return remove_part(item.index);
+  if (item.kind == ItemKind::body)
+    return is_part(item.index) ? remove_part(item.index) : remove_zone(item.index);
+  if (item.kind == ItemKind::domain) return edit_domain(*this, tr("Drop the domain"), {});
   Study study = *study_;
   const auto take = [&](auto& list, const QString& what) {
     if (item.index < 0 || item.index >= static_cast<int>(list.size())) return;
@@ -452,6 +466,11 @@ void Session::remove_item(const Item& item) {
 
 void Session::show_place(const Vec<3>& at, double radius, const QString& words) {
   Q_EMIT place_shown(at, radius, words);
+}
+
+void Session::cut_at(const Vec<3>& at, double radius, const QString& words) {
+  Q_EMIT cut_asked(at);
+  show_place(at, radius, words);
 }
 
 void Session::clear_iterations() {
@@ -476,7 +495,7 @@ void Session::run() {
   clear_iterations();
   run_study_ = study_;
   Q_EMIT logged(tr("Run: %1, at most %2 iterations")
-                    .arg(bodies_text(parts_->size()))
+                    .arg(bodies_text(parts_->size() + (study_->domain ? study_->zones.size() : 0)))
                     .arg(study_->options.iterations));
   // The surfaces spend a share of the chord tolerance: another one needs other surfaces.
   LoadParams params = read_with_;
@@ -495,6 +514,7 @@ void Session::run() {
           worker_.post([this, parts, params] {
             parts_ = parts;
             read_with_ = params;
+            follow_bodies();
             Q_EMIT surfaces_changed();
           });
         }
@@ -512,6 +532,10 @@ void Session::run() {
                                   .arg(record.layers.mean, 0, 'f', 1)
                                   .arg(record.layers.p5, 0, 'f', 1)
                                   .arg(record.seconds, 0, 'f', 1));
+                if (record.mixed > 0)
+                  Q_EMIT logged(tr("%L1 mixed elements, interface error %2")
+                                    .arg(record.mixed)
+                                    .arg(record.interface_error, 0, 'f', 4));
                 add_iteration({record, state});
               });
             });

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/study/domain.h"
 #include "ui/services.h"
 #include "ui/session/item.h"
 #include "ui/session/read_parts.h"
@@ -18,12 +19,19 @@
 namespace lamella::ui {
 
 /// What the window is busy with.
-enum class Activity { idle, loading, running, exporting };
+enum class Activity { idle, loading, running, exporting, checking };
 
 /// One finished iteration: its record and the mesh it left.
 struct Iteration {
   IterationRecord record;
   std::shared_ptr<const MeshState> state;
+};
+
+/// Overlaps and gaps between the bodies, as they were looked for.
+struct OverlapCheck {
+  StudyOverlaps found;
+  double gap_width = 0;  ///< mm; 0: gaps were not looked for
+  double seconds = 0;
 };
 
 /// The open study and everything that happens to it; the panels and views only follow it.
@@ -41,7 +49,12 @@ class Session : public QObject {
   std::shared_ptr<const Study> study_value() const { return study_; }
   const std::vector<Part>& parts() const { return *parts_; }
   std::shared_ptr<const std::vector<Part>> parts_value() const { return parts_; }
-  /// Settings of part `index`; every part has an entry in the study.
+  /// What every body of the study looks like: the parts, the zones as soon as their surfaces are
+  /// known, and the background, which has none of its own.
+  const std::vector<Part>& shapes() const { return *shapes_; }
+  /// Surface of the domain; empty where there is none or bodies are it.
+  const ReferenceSurface<3>& hull() const { return hull_; }
+  /// Settings of body `index`: parts, zones and the background, in this order.
   const BodySettings& body(int index) const { return study_->bodies[index]; }
   /// In the view: what the user chose, else the file's color, else one of ours.
   QColor color_of(int index) const;
@@ -50,8 +63,18 @@ class Session : public QObject {
   Activity activity() const { return activity_; }
   bool cancelling() const { return worker_.cancelling(); }
   /// Nothing to show: neither parts nor a mesh.
-  bool empty() const { return parts_->empty() && iterations_.empty(); }
-  bool can_run() const { return activity_ == Activity::idle && !parts_->empty(); }
+  bool empty() const { return !has_bodies() && iterations_.empty(); }
+  bool has_bodies() const { return !study_->bodies.empty(); }
+  /// Zones are meshed in one mesh of all bodies only.
+  bool can_run() const {
+    return activity_ == Activity::idle && has_bodies() && (study_->domain || !parts_->empty());
+  }
+  /// A body from a file; the others are zones and the background.
+  bool is_part(int index) const { return index >= 0 && index < static_cast<int>(parts_->size()); }
+  bool is_zone(int index) const {
+    const int zone = index - static_cast<int>(parts_->size());
+    return zone >= 0 && zone < static_cast<int>(study_->zones.size());
+  }
   /// True when the settings differ from those the shown meshes were made with.
   bool outdated() const;
   QUndoStack* undo_stack() { return &undo_; }
@@ -61,9 +84,9 @@ class Session : public QObject {
   std::shared_ptr<const MeshState> shown_state() const;
   void show_iteration(int index);
 
-  /// Part selected everywhere; -1: none. Of several it is the one chosen last.
+  /// Body selected everywhere; -1: none. Of several it is the one chosen last.
   int selected() const { return selected_; }
-  /// Every selected part, in rising order; edits of settings go to all of them.
+  /// Every selected body, in rising order; edits of settings go to all of them.
   const std::vector<int>& selection() const { return selection_; }
   void select(int part);
   /// Selects several; `current` is one of them, or -1 with none.
@@ -72,8 +95,8 @@ class Session : public QObject {
   Item item() const;
   void select_item(const Item& item);
 
-  /// Chord tolerance a part gets when the study has none, mm; its smallest size likewise.
-  double automatic_size(int part) const;
+  /// Chord tolerance a body gets when the study has none, mm; its smallest size likewise.
+  double automatic_size(int body) const;
 
   /// Reads a part file and replaces the study, or adds to it. `unit`: mm per unit of an STL.
   void open(const std::vector<std::filesystem::path>& files, bool add = false, double unit = 1);
@@ -81,7 +104,7 @@ class Session : public QObject {
   void open_sample(const std::string& name);
   /// Reads a volume mesh just to look at it.
   void open_mesh(const std::filesystem::path& file);
-  /// Removes one body from the study.
+  /// Removes one part from the study.
   void remove_part(int index);
 
   /// The file of the study; empty while it has none.
@@ -98,6 +121,10 @@ class Session : public QObject {
   Study study_for(const std::filesystem::path& folder) const;
 
   void run();
+  /// Looks for overlaps of the bodies, and for gaps between them narrower than `gap_width` mm.
+  void look_for_overlaps(double gap_width);
+  /// What was found last; nothing once the bodies have changed.
+  const std::optional<OverlapCheck>& overlaps() const { return overlaps_; }
   /// Cancels what is under way.
   void cancel();
   /// Writes the shown mesh.
@@ -112,13 +139,15 @@ class Session : public QObject {
   void remove_item(const Item& item);
   /// Asks the view to bring a place close and mark it.
   void show_place(const Vec<3>& at, double radius, const QString& text);
+  /// The same, with the model cut open through it.
+  void cut_at(const Vec<3>& at, double radius, const QString& text);
   void edit_body(int index, const QString& what, const BodySettings& after);
   /// Changes the settings of every selected body in one undoable step.
   void edit_selection(const QString& what, const std::function<void(BodySettings&)>& change);
 
  Q_SIGNALS:
   void parts_changed();
-  /// The same parts have finer or coarser surfaces.
+  /// Surfaces are finer or coarser, or of other zones.
   void surfaces_changed();
   void study_changed();
   void selection_changed();
@@ -129,11 +158,13 @@ class Session : public QObject {
   /// Fraction in [0, 1]; seconds left, negative while unknown.
   void progressed(double fraction, const QString& phase, double seconds_left);
   void run_finished();
+  void overlaps_changed();
   void exported(const QString& file);
   void saved(const QString& file);
   /// A study file is open, with all its parts.
   void study_opened(const QString& file);
   void place_shown(const lamella::Vec<3>& at, double radius, const QString& text);
+  void cut_asked(const lamella::Vec<3>& at);
   void failed(const QString& message, const QString& hint);
   /// An STL was read without a unit; its size may need another one.
   void unit_assumed(const QString& file, const QString& size);
@@ -142,6 +173,11 @@ class Session : public QObject {
  private:
   friend class EditStudy;
   void set_study(std::shared_ptr<const Study> study);
+  /// Shapes and selection for the bodies as they are now. True where other bodies came.
+  bool follow_bodies();
+  void take_zone_shapes();
+  void drop_overlaps();
+  void remove_zone(int index);
   void set_activity(Activity activity);
   void begin(Activity activity, Worker::Job job);
   void report(const Error& error);
@@ -157,6 +193,13 @@ class Session : public QObject {
   Services services_;
   std::shared_ptr<const Study> study_ = std::make_shared<Study>();
   std::shared_ptr<const std::vector<Part>> parts_ = std::make_shared<std::vector<Part>>();
+  std::shared_ptr<const std::vector<Part>> shapes_ = parts_;
+  std::shared_ptr<const Study> shaped_;  // whose bodies `shapes_` has
+  std::shared_ptr<const std::vector<Part>> shaped_parts_;
+  int shaped_round_ = 0;  // counts other bodies
+  int drawn_round_ = 0;   // whose zones have their surfaces
+  ReferenceSurface<3> hull_;
+  std::optional<OverlapCheck> overlaps_;
   std::vector<PartSource> sources_;  // one a part
   LoadParams read_with_;             // tolerances of the parts' surfaces
   std::vector<Iteration> iterations_;
@@ -174,6 +217,7 @@ class Session : public QObject {
   int merges_ = 0;
   QUndoStack undo_;
   QElapsedTimer clock_;
+  Worker shaper_;  // of zones
   Worker worker_;  // last: its destructor waits for the job that uses the rest
 };
 

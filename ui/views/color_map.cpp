@@ -7,7 +7,12 @@ namespace lamella::ui {
 
 QColor ColorMap::at(double t) const {
   t = std::clamp(t, 0.0, 1.0);
-  if (bands > 0) t = (std::min(std::floor(t * bands), bands - 1.0) + 0.5) / bands;
+  if (bands > 0) {
+    const double band = std::min(std::floor(t * bands), bands - 1.0);
+    // As many colors as bands: each has its own.
+    const bool own = static_cast<std::size_t>(bands) == stops.size();
+    t = own ? band / (bands - 1) : (band + 0.5) / bands;
+  }
   const double place = t * static_cast<double>(stops.size() - 1);
   const auto k = std::min(static_cast<std::size_t>(place), stops.size() - 2);
   const double w = place - static_cast<double>(k);
@@ -21,6 +26,12 @@ ColorMap sequential_map() {
   return {{QColor(0x44, 0x3a, 0x83), QColor(0x3b, 0x5b, 0x92), QColor(0x31, 0x7b, 0x8f),
            QColor(0x2a, 0x9a, 0x87), QColor(0x4f, 0xb8, 0x6f), QColor(0x9c, 0xcf, 0x4e),
            QColor(0xf4, 0xe0, 0x4d)}};
+}
+
+ColorMap filling_map() {
+  return {{QColor(0xee, 0xf1, 0xf4), QColor(0xf2, 0xc1, 0x6d), QColor(0xd9, 0x6b, 0x3b),
+           QColor(0x2f, 0x6f, 0xb3)},
+          4};
 }
 
 ColorMap rating_map() {

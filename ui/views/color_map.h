@@ -2,12 +2,13 @@
 
 #include <QColor>
 #include <QString>
+#include <QStringList>
 #include <vector>
 
 namespace lamella::ui {
 
 /// What the mesh is colored by.
-enum class ColorBy { body, quality, thickness, layers };
+enum class ColorBy { body, quality, thickness, layers, filling };
 
 /// Colors at equal distances over [0, 1]; interpolated, or in bands of equal width.
 struct ColorMap {
@@ -23,13 +24,17 @@ ColorMap sequential_map();
 /// Red (poor) over pale to blue (good).
 ColorMap rating_map();
 
+/// Filling ratios: empty, less than half, half and more, full.
+ColorMap filling_map();
+
 /// How values became colors; no title: colors need no explanation.
 struct Legend {
   QString title;
   double low = 0;
   double high = 1;
   ColorMap map;
-  QString missing{};  ///< what gray stands for; empty: nothing is gray
+  QStringList bands{};  ///< what each band of the map is; empty: values are told at ticks
+  QString missing{};    ///< what gray stands for; empty: nothing is gray
 };
 
 }  // namespace lamella::ui

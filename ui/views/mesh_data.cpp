@@ -100,6 +100,36 @@ vtkSmartPointer<vtkPolyData> feature_data(const SimplexMesh<3>& mesh) {
   return data;
 }
 
+std::vector<std::array<NodeId, 3>> sorted_faces(vtkPolyData& data, vtkIntArray& node) {
+  std::vector<std::array<NodeId, 3>> faces;
+  faces.reserve(static_cast<std::size_t>(data.GetNumberOfCells()));
+  vtkNew<vtkIdList> corner;
+  for (vtkIdType f = 0; f < data.GetNumberOfCells(); ++f) {
+    data.GetCellPoints(f, corner);
+    std::array<NodeId, 3> face{node.GetValue(corner->GetId(0)), node.GetValue(corner->GetId(1)),
+                               node.GetValue(corner->GetId(2))};
+    std::sort(face.begin(), face.end());
+    faces.push_back(face);
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+vtkSmartPointer<vtkFloatArray> filling_bands(const Filling& filling, std::int32_t region,
+                                             vtkIntArray& element) {
+  auto bands = vtkSmartPointer<vtkFloatArray>::New();
+  bands->SetName("filling");
+  bands->SetNumberOfTuples(element.GetNumberOfTuples());
+  for (vtkIdType f = 0; f < element.GetNumberOfTuples(); ++f) {
+    const auto e = static_cast<std::size_t>(element.GetValue(f));
+    const double ratio = filling.ratio(e, region);
+    // An element that is filled by one body alone is full or empty, whatever the numbers say.
+    const bool half = ratio >= 0.5, mixed = filling.mixed(e) && ratio > 0;
+    bands->SetValue(f, !half ? (mixed ? 0.375F : 0.125F) : (mixed ? 0.625F : 0.875F));
+  }
+  return bands;
+}
+
 std::pair<double, double> robust_range(std::vector<double> values) {
   std::erase_if(values, [](double v) { return !std::isfinite(v); });
   if (values.empty()) return {0, 1};

@@ -32,6 +32,12 @@ ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
   bar_ = new ViewBar(actions);
   layout->addWidget(bar_);
   connect(bar_, &ViewBar::color_changed, this, &ModelView::follow_study);
+  connect(bar_, &ViewBar::body_chosen, this, [this](int body) {
+    if (session_.has_bodies())
+      session_.select(body);
+    else
+      follow_study();
+  });
   connect(bar_, &ViewBar::slide_started, this, [this] { drag_merge_ = session_.new_merge(); });
   connect(bar_, &ViewBar::slid, this, [this](double at) { slide_to(at, drag_merge_); });
   connect(bar_, &ViewBar::moved, this, [this](double at) { slide_to(at, 0); });
@@ -98,6 +104,12 @@ void ModelView::connect_session() {
             picks_->mark(at, text);
             overlay_->update();
           });
+  connect(&session_, &Session::cut_asked, this, [this](const Vec<3>& at) {
+    if (!scene_) return;
+    Section cut = section().value_or(section_across(-1));
+    cut.origin = at;
+    set_section(cut);
+  });
 }
 
 void ModelView::connect_actions() {
@@ -155,12 +167,16 @@ void ModelView::connect_actions() {
 
 void ModelView::follow_surfaces() {
   if (!scene_) return;
+  const bool had = scene_->bounds()[0] <= scene_->bounds()[1];
   std::vector<QColor> colors;
-  for (std::size_t k = 0; k < session_.parts().size(); ++k)
+  for (std::size_t k = 0; k < session_.shapes().size(); ++k)
     colors.push_back(session_.color_of(static_cast<int>(k)));
-  scene_->set_parts(session_.parts(), colors);
+  scene_->set_parts(session_.shapes(), colors);
+  scene_->set_hull(session_.hull());
+  tool_->set_bounds(scene_->bounds());
   groups_shown_.clear();
   follow_study();
+  if (!had) look_isometric();
 }
 
 void ModelView::follow_parts() {
@@ -239,7 +255,7 @@ void ModelView::context_menu(const QPoint& at) {
           body.visible = false;
           session_.edit_body(part, tr("Hide %1").arg(QString::fromStdString(body.name)), body);
         });
-    if (picked->face) {
+    if (picked->face && session_.is_part(part)) {
       menu.addAction(actions_[Act::add_group]->icon(), tr("New boundary group of this face"), this,
                      [this, part, face = *picked->face] {
                        add_group(session_, GroupKind::gate, session_.body(part).name, {face});
@@ -258,11 +274,7 @@ void ModelView::context_menu(const QPoint& at) {
                    });
     menu.addSeparator();
   }
-  menu.addAction(tr("Show all bodies"), this, [this] {
-    Study study = session_.study();
-    for (BodySettings& body : study.bodies) body.visible = true;
-    session_.edit(tr("Show all bodies"), std::move(study));
-  });
+  menu.addAction(tr("Show all bodies"), this, [this] { show_all_bodies(session_); });
   for (const Act act : {Act::section, Act::fit, Act::view_iso, Act::measure, Act::save_picture})
     menu.addAction(actions_[act]);
   menu.exec(view_->mapToGlobal(at));
@@ -297,14 +309,29 @@ void ModelView::follow_study() {
     colors.push_back(session_.color_of(k));
   }
   if (count > 0) layers = session_.body(std::clamp(session_.selected(), 0, count - 1)).layers;
+  const std::string filled_by = choose_filled();
   scene_->set_visible(visible);
   scene_->set_colors(colors);
-  scene_->set_color_by(color_by(), layers);
+  scene_->set_color_by(color_by(), layers, filled_by);
   follow_cuts();
   follow_groups();
   follow_sizes();
   overlay_->set_hint(picks_->hint());
   refresh();
+}
+
+std::string ModelView::choose_filled() {
+  std::vector<std::string> names;
+  for (const BodySettings& body : session_.study().bodies) names.push_back(body.name);
+  const auto state = session_.shown_state();
+  const bool alone = names.empty();  // a mesh that was opened without a study
+  if (alone && state) names = state->mesh.bodies;
+  const int last = static_cast<int>(names.size()) - 1;
+  const int current = std::clamp(alone ? bar_->body() : session_.selected(), 0, std::max(0, last));
+  QStringList shown;
+  for (const std::string& name : names) shown << QString::fromStdString(name);
+  bar_->show_bodies(shown, current);
+  return last < 0 ? std::string() : names[static_cast<std::size_t>(current)];
 }
 
 void ModelView::follow_groups() {
@@ -316,7 +343,7 @@ void ModelView::follow_groups() {
   groups_shown_ = std::move(key);
   std::vector<QColor> colors;
   std::vector<std::vector<int>> facet_group;
-  for (const Part& part : session_.parts())
+  for (const Part& part : session_.shapes())
     facet_group.emplace_back(part.surface.facets.size(), -1);
   for (std::size_t g = 0; g < study.groups.size(); ++g) {
     colors.push_back(group_color(static_cast<int>(g)));
@@ -340,7 +367,7 @@ void ModelView::follow_groups() {
 void ModelView::follow_sizes() {
   const Item item = session_.item();
   const bool chosen = item.kind == ItemKind::sizing;
-  shapes_->set(session_.study().sizing, session_.parts(), chosen ? item.index : -1);
+  shapes_->set(session_.study().sizing, session_.shapes(), chosen ? item.index : -1);
   size_tool_->set(
       chosen ? std::optional(session_.study().sizing[static_cast<std::size_t>(item.index)].shape)
              : std::nullopt);
@@ -351,6 +378,7 @@ void ModelView::follow_mesh() {
   const bool had = scene_->bounds()[0] <= scene_->bounds()[1];
   picks_->forget();
   scene_->set_mesh(session_.shown_state());
+  if (!session_.has_bodies()) follow_study();
   tool_->set_bounds(scene_->bounds());
   if (!had) look_isometric();
   refresh();
@@ -533,7 +561,7 @@ Vec<3> ModelView::first_direction() const {
     direction[thin] = direction[thin] < 0 ? -0.85 : 0.85;
     double shown = 0;  // CAD faces that look our way, less those that look away
     double all = 0;
-    for (const Part& part : session_.parts()) {
+    for (const Part& part : session_.shapes()) {
       std::vector<double> along(part.surface.faces.size());
       all += static_cast<double>(along.size());
       for (std::size_t k = 0; k < part.surface.facets.size(); ++k) {

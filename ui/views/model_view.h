@@ -73,6 +73,8 @@ class ModelView : public QWidget {
   void follow_mesh();
   void follow_cuts();
   void follow_groups();
+  /// Name of the body whose filling is shown: the selected one.
+  std::string choose_filled();
   void follow_sizes();
   void follow_mode();
   void apply_sections();

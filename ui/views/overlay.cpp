@@ -128,7 +128,12 @@ void Overlay::paint_legend(QPainter& painter) const {
   painter.setFont(small);
   painter.setPen(theme::soft_text);
   constexpr int ticks = 4;
-  for (int k = 0; k <= ticks; ++k) {
+  const auto bands = legend_.bands.size();
+  for (int k = 0; k < bands; ++k)
+    painter.drawText(
+        QRectF(bar.left() + bar.width() * k / bands, bar.bottom() + 3, bar.width() / bands, 18),
+        int(Qt::AlignHCenter) | int(Qt::AlignTop), legend_.bands[k]);
+  for (int k = 0; k <= ticks && bands == 0; ++k) {
     const double value = legend_.low + (legend_.high - legend_.low) * k / ticks;
     const double x = bar.left() + bar.width() * k / ticks;
     const auto align = k == 0 ? Qt::AlignLeft : k == ticks ? Qt::AlignRight : Qt::AlignHCenter;

@@ -121,7 +121,7 @@ bool PickTools::click(const std::optional<Picked>& picked) {
       actions_.leave_mode();
       break;
     case Act::correct_face: {
-      if (picked->part < 0 || !picked->face) break;
+      if (!session_.is_part(picked->part) || !picked->face) break;
       FacesShape shape;
       shape.ids = {*picked->face};
       add_sizing(session_, body, tr("face size"), shape);
@@ -141,12 +141,11 @@ bool PickTools::click(const std::optional<Picked>& picked) {
   return true;
 }
 
-double PickTools::diagonal_of(int part) const {
-  return lamella::diagonal_of(session_.parts()[static_cast<std::size_t>(part)].surface.points);
-}
+double PickTools::diagonal_of(int part) const { return 1e3 * session_.automatic_size(part); }
 
 void PickTools::pick_face(const Picked& picked) {
-  if (picked.part < 0 || !picked.face) return;
+  // Groups are of parts: faces of a zone have no numbers that last.
+  if (!session_.is_part(picked.part) || !picked.face) return;
   const std::string& body = session_.body(picked.part).name;
   if (session_.item().kind == ItemKind::group)
     toggle_face(session_, session_.item().index, body, *picked.face);
@@ -155,7 +154,7 @@ void PickTools::pick_face(const Picked& picked) {
 }
 
 void PickTools::flood_from(const Picked& picked) {
-  if (picked.part < 0) return;
+  if (!session_.is_part(picked.part)) return;
   const std::string body = session_.body(picked.part).name;
   if (session_.item().kind != ItemKind::group) add_group(session_, GroupKind::gate, body, {});
   const double angle = actions_[Act::pick_flood]->data().toDouble();

@@ -10,7 +10,6 @@
 #include <vtkFloatArray.h>
 #include <vtkImplicitBoolean.h>
 #include <vtkIntArray.h>
-#include <vtkLight.h>
 #include <vtkLookupTable.h>
 #include <vtkPlane.h>
 #include <vtkPointData.h>
@@ -21,12 +20,12 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
-#include <QCoreApplication>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "ui/theme.h"
+#include "ui/views/legends.h"
 #include "ui/views/mesh_data.h"
 #include "ui/views/scene_actors.h"
 
@@ -51,6 +50,8 @@ struct Scene::Impl {
   std::shared_ptr<const MeshState> state;
   // Boundary faces of the mesh, each sorted, with their numbers; sorted.
   std::vector<std::pair<std::array<NodeId, 3>, int>> outer;
+  // Faces towards bodies that are hidden, as `outer`; made when first needed.
+  std::optional<std::vector<std::array<NodeId, 3>>> bared;
   std::vector<std::vector<int>> facet_group;  // [part][facet of its surface]
   std::vector<std::vector<int>> face_group;   // [part][CAD face], -1: not all of it
   std::vector<QColor> group_colors;
@@ -62,9 +63,12 @@ struct Scene::Impl {
   vtkNew<vtkPolyDataMapper> mesh_mapper;
   vtkNew<vtkActor> mesh_lines;  // features, where there is no part to take them from
   vtkNew<vtkPolyDataMapper> mesh_lines_mapper;
+  vtkNew<vtkActor> hull_lines;
+  vtkNew<vtkPolyDataMapper> hull_mapper;
   std::vector<Cut> cuts;
   ColorBy color_by = ColorBy::body;
   int layers_asked = 4;
+  std::string filled_by;
   bool edges = true;
   bool crinkle = true;
   bool features = true;
@@ -78,18 +82,12 @@ struct Scene::Impl {
     renderer.AddActor(mesh_actor);
     style_lines(*mesh_lines, *mesh_lines_mapper);
     renderer.AddActor(mesh_lines);
-    // A key light over the left shoulder gives faces of different slope different shades; the
-    // second one keeps what it leaves in the dark readable.
-    renderer.AutomaticLightCreationOff();
-    for (const auto& [x, y, z, intensity] :
-         {std::array{-0.30, 0.60, 1.0, 0.95}, std::array{0.7, -0.2, 1.0, 0.35}}) {
-      vtkNew<vtkLight> light;
-      light->SetLightTypeToCameraLight();
-      light->SetPosition(x, y, z);
-      light->SetFocalPoint(0, 0, 0);
-      light->SetIntensity(intensity);
-      renderer.AddLight(light);
-    }
+    style_lines(*hull_lines, *hull_mapper);
+    hull_lines->GetProperty()->SetColor(0.45, 0.52, 0.60);
+    hull_lines->PickableOff();
+    hull_lines->VisibilityOff();
+    renderer.AddActor(hull_lines);
+    add_lights(renderer);
   }
 
   bool part_visible(int part) const {
@@ -107,10 +105,30 @@ struct Scene::Impl {
         return state->thickness.size() == mesh.points.size();
       case ColorBy::layers:
         return state->layers.size() == mesh.points.size();
+      case ColorBy::filling:
+        return state->filling && state->filling->first.size() == mesh.elements.size() + 1 &&
+               filled_region() >= 0;
       case ColorBy::body:
         break;
     }
     return true;
+  }
+
+  /// Of the body whose filling is shown; -1: it is not in this mesh.
+  int filled_region() const {
+    const auto& bodies = state->mesh.bodies;
+    const auto it = std::find(bodies.begin(), bodies.end(), filled_by);
+    return it == bodies.end() ? -1 : static_cast<int>(it - bodies.begin());
+  }
+
+  void match_bodies() {
+    part_of_body.clear();
+    if (!state) return;
+    for (const std::string& body : state->mesh.bodies) {
+      const auto part = std::find_if(parts.begin(), parts.end(),
+                                     [&](const PartActors& p) { return p.name == body; });
+      part_of_body.push_back(part == parts.end() ? -1 : static_cast<int>(part - parts.begin()));
+    }
   }
 
   QColor color_of_body(int body) const {
@@ -123,12 +141,15 @@ struct Scene::Impl {
   void update_bounds() {
     Vec<3> low = Vec<3>::Constant(std::numeric_limits<double>::max());
     Vec<3> high = -low;
-    for (const PartActors& part : parts) {
+    const auto take = [&](vtkMapper& mapper) {
       double b[6];
-      part.surface->GetMapper()->GetBounds(b);
+      mapper.GetBounds(b);
+      if (b[0] > b[1]) return;  // nothing is drawn
       low = low.cwiseMin(Vec<3>(b[0], b[2], b[4]));
       high = high.cwiseMax(Vec<3>(b[1], b[3], b[5]));
-    }
+    };
+    for (const PartActors& part : parts) take(*part.surface->GetMapper());
+    if (hull_lines->GetVisibility()) take(*hull_mapper);
     if (parts.empty() && state) {
       for (std::size_t k = 1; k < state->mesh.points.size(); ++k) {
         low = low.cwiseMin(state->mesh.points[k]);
@@ -218,6 +239,18 @@ struct Scene::Impl {
       grid->GetCellData()->AddArray(quality);
     }
     skin = nullptr;
+    bared.reset();
+  }
+
+  /// Whether the body of a face of the mesh ends there, at one that is hidden.
+  bool is_bared(std::array<NodeId, 3> face) {
+    if (!bared) {
+      if (!skin) skin = skin_of(grid);
+      bared = sorted_faces(*skin,
+                           *vtkIntArray::SafeDownCast(skin->GetPointData()->GetArray(node_array)));
+    }
+    std::sort(face.begin(), face.end());
+    return std::binary_search(bared->begin(), bared->end(), face);
   }
 
   static vtkSmartPointer<vtkPolyData> skin_of(vtkUnstructuredGrid* of) {
@@ -298,20 +331,16 @@ struct Scene::Impl {
 
   void recolor() {
     legend = {};
-    const auto tr = [](const char* text) { return QCoreApplication::translate("Scene", text); };
-    if (color_by != ColorBy::body && !has(color_by) && (state || !parts.empty())) {
-      legend.title = color_by == ColorBy::quality     ? tr("Quality c(T)")
-                     : color_by == ColorBy::thickness ? tr("Wall thickness")
-                                                      : tr("Layers through the wall");
-      legend.missing = state ? tr("not in this mesh") : tr("known once the part is meshed");
-    }
+    if (color_by != ColorBy::body && !has(color_by) && (state || !parts.empty()))
+      legend = missing_legend(color_by, state != nullptr);
     color_parts();
     if (!grid) return;
     // Shading gives a body its shape, but the colors of values must be those of the legend.
     const bool values = color_by != ColorBy::body && has(color_by);
     mesh_actor->GetProperty()->SetAmbient(values ? 0.74 : 0.42);
     mesh_actor->GetProperty()->SetDiffuse(values ? 0.28 : 0.68);
-    if (color_by != ColorBy::body && has(color_by)) fill_legend();
+    if (color_by != ColorBy::body && has(color_by))
+      legend = field_legend(color_by, *state, layers_asked, filled_by);
     color(*mesh_mapper, false);
     for (const Cut& cut : cuts) {
       cut.actor->GetProperty()->SetAmbient(1);
@@ -392,7 +421,12 @@ struct Scene::Impl {
     mapper.SetLookupTable(table);
     mapper.UseLookupTableScalarRangeOn();
     mapper.SetColorModeToMapScalars();
-    if (color_by == ColorBy::quality) {
+    if (color_by == ColorBy::filling) {
+      auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
+      data.GetCellData()->SetScalars(filling_bands(*state->filling, filled_region(), *element));
+      mapper.SetScalarModeToUseCellData();
+      mapper.InterpolateScalarsBeforeMappingOff();
+    } else if (color_by == ColorBy::quality) {
       data.GetCellData()->SetActiveScalars(quality_array);
       mapper.SetScalarModeToUseCellData();
       mapper.InterpolateScalarsBeforeMappingOff();
@@ -415,6 +449,8 @@ struct Scene::Impl {
     rgb->SetNumberOfTuples(faces);
     vtkNew<vtkIdList> corner;
     const bool opened = (!cuts.empty() && crinkle) || quality_range;
+    const bool some_hidden =
+        !quality_range && std::find(visible.begin(), visible.end(), false) != visible.end();
     for (vtkIdType f = 0; f < faces; ++f) {
       const int e = element->GetValue(f);
       const int body =
@@ -423,47 +459,24 @@ struct Scene::Impl {
       bool made_by_section = inside;
       if (!inside && (opened || !group_colors.empty())) {
         data.GetCellPoints(f, corner);
-        const int facet =
-            facet_with({node->GetValue(corner->GetId(0)), node->GetValue(corner->GetId(1)),
-                        node->GetValue(corner->GetId(2))});
-        made_by_section = facet < 0;
+        const std::array<NodeId, 3> nodes{node->GetValue(corner->GetId(0)),
+                                          node->GetValue(corner->GetId(1)),
+                                          node->GetValue(corner->GetId(2))};
+        const int facet = facet_with(nodes);
+        made_by_section = facet < 0 && !(some_hidden && is_bared(nodes));
         const int group = facet < 0 ? -1
                                     : group_of(part_of_body[static_cast<std::size_t>(body)],
                                                static_cast<std::size_t>(facet));
         if (group >= 0) c = group_colors[static_cast<std::size_t>(group)];
       }
-      if (made_by_section) c = inside_color(c);
+      // Bodies side by side in a cut must differ.
+      if (made_by_section) c = inside_color(c, state->mesh.bodies.size() > 1 ? 2 : 1);
       const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
                                       static_cast<unsigned char>(c.green()),
                                       static_cast<unsigned char>(c.blue())};
       rgb->SetTypedTuple(f, bytes);
     }
     data.GetCellData()->SetScalars(rgb);
-  }
-
-  void fill_legend() {
-    const auto tr = [](const char* text) { return QCoreApplication::translate("Scene", text); };
-    switch (color_by) {
-      case ColorBy::body:
-        break;
-      case ColorBy::quality:
-        legend = {tr("Quality c(T)"), 0, 1, rating_map()};
-        break;
-      case ColorBy::thickness: {
-        const auto& t = state->thickness;
-        const auto [low, high] = robust_range({t.begin() + 1, t.end()});
-        legend = {tr("Wall thickness, mm"), low, high, sequential_map()};
-        break;
-      }
-      case ColorBy::layers: {
-        // One band a layer, the one of n layers being the first good one.
-        const int n = layers_asked;
-        legend = {tr("Layers through the wall, %1 asked").arg(n), 0, 2.0 * n, rating_map()};
-        legend.map.bands = std::min(2 * n, 24);
-        legend.missing = tr("no wall to count in");
-        break;
-      }
-    }
   }
 };
 
@@ -485,6 +498,8 @@ void Scene::set_parts(const std::vector<Part>& parts, const std::vector<QColor>&
   }
   impl_->facet_group.clear();
   impl_->face_group.clear();
+  impl_->match_bodies();
+  impl_->build_grid();
   impl_->update_bounds();
   clip_parts();
   impl_->update_mesh();
@@ -493,15 +508,9 @@ void Scene::set_parts(const std::vector<Part>& parts, const std::vector<QColor>&
 void Scene::set_mesh(std::shared_ptr<const MeshState> state) {
   impl_->state = std::move(state);
   impl_->outer.clear();
-  impl_->part_of_body.clear();
+  impl_->match_bodies();
   if (impl_->state) {
     const SimplexMesh<3>& mesh = impl_->state->mesh;
-    for (const std::string& body : mesh.bodies) {
-      const auto part = std::find_if(impl_->parts.begin(), impl_->parts.end(),
-                                     [&](const PartActors& p) { return p.name == body; });
-      impl_->part_of_body.push_back(
-          part == impl_->parts.end() ? -1 : static_cast<int>(part - impl_->parts.begin()));
-    }
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
       auto face = mesh.facets[f];
       std::sort(face.begin(), face.end());
@@ -616,8 +625,17 @@ bool Scene::set_pixel_size(double size) {
   return true;
 }
 
-void Scene::set_color_by(ColorBy color_by, int layers_asked) {
-  if (color_by == impl_->color_by && layers_asked == impl_->layers_asked) return;
+void Scene::set_hull(const ReferenceSurface<3>& hull) {
+  impl_->hull_lines->SetVisibility(!hull.points.empty());
+  if (!hull.points.empty()) impl_->hull_mapper->SetInputData(feature_data(hull));
+  impl_->update_bounds();
+}
+
+void Scene::set_color_by(ColorBy color_by, int layers_asked, const std::string& body) {
+  if (color_by == impl_->color_by && layers_asked == impl_->layers_asked &&
+      body == impl_->filled_by)
+    return;
+  impl_->filled_by = body;
   impl_->color_by = color_by;
   impl_->layers_asked = layers_asked;
   impl_->recolor();

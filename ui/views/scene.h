@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -55,8 +56,10 @@ class Scene {
   /// picture would be all edges.
   /// True when that asks for another picture.
   bool set_pixel_size(double size);
-  /// `layers_asked` centers the scale of ColorBy::layers.
-  void set_color_by(ColorBy color_by, int layers_asked);
+  /// `layers_asked` centers the scale of ColorBy::layers; `body`: whose filling is shown.
+  void set_color_by(ColorBy color_by, int layers_asked, const std::string& body);
+  /// Outline of what one mesh of all bodies fills; empty: none.
+  void set_hull(const ReferenceSurface<3>& hull);
   /// Cuts the mesh as `set_crinkle` says, and the parts smoothly; what is on the far side of any of
   /// the planes goes.
   void set_sections(const std::vector<Section>& sections);

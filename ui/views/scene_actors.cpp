@@ -1,6 +1,10 @@
 #include "ui/views/scene_actors.h"
 
+#include <vtkLight.h>
 #include <vtkPolyDataNormals.h>
+#include <vtkRenderer.h>
+
+#include <array>
 
 #include "ui/views/mesh_data.h"
 
@@ -29,8 +33,24 @@ void style_mesh(vtkActor& actor, vtkPolyDataMapper& mapper) {
   actor.VisibilityOff();
 }
 
-QColor inside_color(const QColor& c) {
-  return {(c.red() + 2 * 255) / 3, (c.green() + 2 * 250) / 3, (c.blue() + 2 * 238) / 3};
+QColor inside_color(const QColor& c, int strength) {
+  const auto pale = [&](int own, int paper) {
+    return (strength * own + 2 * paper) / (strength + 2);
+  };
+  return {pale(c.red(), 255), pale(c.green(), 250), pale(c.blue(), 238)};
+}
+
+void add_lights(vtkRenderer& renderer) {
+  renderer.AutomaticLightCreationOff();
+  for (const auto& [x, y, z, intensity] :
+       {std::array{-0.30, 0.60, 1.0, 0.95}, std::array{0.7, -0.2, 1.0, 0.35}}) {
+    vtkNew<vtkLight> light;
+    light->SetLightTypeToCameraLight();
+    light->SetPosition(x, y, z);
+    light->SetFocalPoint(0, 0, 0);
+    light->SetIntensity(intensity);
+    renderer.AddLight(light);
+  }
 }
 
 PartActors part_actors(const Part& part, const QColor& color) {

@@ -12,6 +12,8 @@
 
 #include "core/geometry/surface.h"
 
+class vtkRenderer;
+
 namespace lamella::ui {
 
 /// A part as it is drawn: its surface and the lines between its faces.
@@ -35,10 +37,14 @@ struct Cut {
 };
 Cut make_cut(const Vec<3>& origin, const Vec<3>& normal);
 
-/// Elements of a mesh: flat faces with edges; lines; the paler inside of a cut body.
+/// Elements of a mesh: flat faces with edges; lines; the paler inside of a cut body, of which
+/// several side by side need more `strength` to differ.
 void style_mesh(vtkActor& actor, vtkPolyDataMapper& mapper);
 void style_lines(vtkActor& actor, vtkPolyDataMapper& mapper);
-QColor inside_color(const QColor& color);
+QColor inside_color(const QColor& color, int strength = 1);
+/// A key light over the left shoulder gives faces of different slope different shades; the second
+/// one keeps what it leaves in the dark readable.
+void add_lights(vtkRenderer& renderer);
 void set_color(vtkProperty& property, const QColor& color);
 
 }  // namespace lamella::ui

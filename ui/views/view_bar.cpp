@@ -66,8 +66,16 @@ ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(a
   colors_->addItem(tr("Quality c(T)"), int(ColorBy::quality));
   colors_->addItem(tr("Wall thickness"), int(ColorBy::thickness));
   colors_->addItem(tr("Layers measured"), int(ColorBy::layers));
+  colors_->addItem(tr("Filling ratio"), int(ColorBy::filling));
   colors_->setMinimumWidth(140);
   row->addWidget(colors_);
+  bodies_ = new QComboBox;
+  bodies_->setObjectName("filling_body");
+  bodies_->setAccessibleName(tr("Body whose filling is shown"));
+  bodies_->setToolTip(tr("Body whose filling is shown: the selected one"));
+  bodies_->setMinimumWidth(100);
+  bodies_->hide();
+  row->addWidget(bodies_);
   row->addWidget(button(actions_[Act::edges]));
   row->addWidget(button(actions_[Act::features]));
   row->addWidget(separator());
@@ -93,6 +101,7 @@ ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(a
   rows->addWidget(section_bar_);
   section_bar_->hide();
   connect(colors_, &QComboBox::currentIndexChanged, this, &ViewBar::color_changed);
+  connect(bodies_, &QComboBox::currentIndexChanged, this, &ViewBar::body_chosen);
 }
 
 QWidget* ViewBar::make_section_bar() {
@@ -139,6 +148,16 @@ ColorBy ViewBar::color_by() const { return ColorBy(colors_->currentData().toInt(
 
 void ViewBar::set_color_by(ColorBy color_by) {
   colors_->setCurrentIndex(colors_->findData(int(color_by)));
+}
+
+int ViewBar::body() const { return bodies_->currentIndex(); }
+
+void ViewBar::show_bodies(const QStringList& names, int current) {
+  const QSignalBlocker block(bodies_);
+  bodies_->clear();
+  bodies_->addItems(names);
+  bodies_->setCurrentIndex(current);
+  bodies_->setVisible(color_by() == ColorBy::filling && !names.isEmpty());
 }
 
 void ViewBar::show_section(const std::optional<Section>& section,

@@ -24,11 +24,17 @@ class ViewBar : public QFrame {
 
   ColorBy color_by() const;
   void set_color_by(ColorBy color_by);
+  /// The one of `show_bodies` that is chosen.
+  int body() const;
+  /// The bodies whose filling can be shown, and the one that is.
+  void show_bodies(const QStringList& names, int current);
   /// Shows where the plane is in the box of the model; nothing hides what is for cuts.
   void show_section(const std::optional<Section>& section, const std::array<double, 6>& bounds);
 
  Q_SIGNALS:
   void color_changed();
+  /// Another body whose filling is to be shown.
+  void body_chosen(int body);
   void slide_started();
   /// Places along the normal, mm: by the slider, by a number.
   void slid(double position);
@@ -39,6 +45,7 @@ class ViewBar : public QFrame {
 
   Actions& actions_;
   QComboBox* colors_;
+  QComboBox* bodies_;
   QWidget* section_bar_;
   QSlider* slider_ = nullptr;
   QDoubleSpinBox* position_ = nullptr;

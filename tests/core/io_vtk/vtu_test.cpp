@@ -34,6 +34,7 @@ class Vtu : public testing::Test {
     fields.thickness = &thickness;
     fields.layers = &layers;
     fields.quality = &quality;
+    fields.of_elements = {{"filling A", std::vector<double>(mesh.elements.size(), 0.3)}};
     return write_vtu(mesh, fields, folder / "m.vtu", progress);
   }
 };
@@ -54,6 +55,9 @@ TEST_F(Vtu, ReadsBackMeshNamesAndFields) {
   EXPECT_EQ(back->thickness.at(7), thickness[7]);
   EXPECT_EQ(std::isnan(back->layers.at(3)), std::isnan(layers[3]));
   EXPECT_EQ(back->quality, quality);
+  ASSERT_EQ(back->of_elements.size(), 1u);
+  EXPECT_EQ(back->of_elements[0].name, "filling A");
+  EXPECT_EQ(back->of_elements[0].values, std::vector<double>(mesh.elements.size(), 0.3));
 }
 
 // The order of the six components and the type of the ids are what other programs rely on.

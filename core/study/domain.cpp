@@ -1,0 +1,99 @@
+#include "core/study/domain.h"
+
+#include <algorithm>
+
+#include "core/study/request.h"
+
+namespace lamella {
+
+namespace {
+
+constexpr int kBackgroundLayers = 2;
+
+Box<3> box_around(const Part& part) {
+  Box<3> box;
+  for (const Vec<3>& p : part.surface.points) box.add(p);
+  return box;
+}
+
+}  // namespace
+
+bool has_background(const Study& study) {
+  return study.domain && !std::holds_alternative<DomainBody>(study.domain->shape);
+}
+
+void arrange_bodies(Study& study, const std::vector<Part>& parts) {
+  std::vector<BodySettings> bodies;
+  for (const Part& part : parts) bodies.push_back(settings_of(study, part.name));
+  for (const StudyZone& zone : study.zones) bodies.push_back(settings_of(study, zone.name));
+  if (has_background(study)) {
+    bodies.push_back(settings_of(study, kBackground));
+    if (std::none_of(study.bodies.begin(), study.bodies.end(),
+                     [](const BodySettings& body) { return body.name == kBackground; })) {
+      bodies.back().layers = kBackgroundLayers;
+      bodies.back().visible = false;
+    }
+  }
+  study.bodies = std::move(bodies);
+}
+
+Result<StudyZone> domain_hull(const Study& study, const std::vector<Part>& parts) {
+  if (!study.domain) return Error{Code::usage, "The study has no domain.", "Give it one."};
+  const auto& domain = study.domain->shape;
+  StudyZone hull{kBackground, ZoneBox{}};
+  if (const auto* body = std::get_if<DomainBody>(&domain)) {
+    for (const StudyZone& zone : study.zones)
+      if (zone.name == body->name) return zone;
+    for (const Part& part : parts) {
+      if (part.name != body->name) continue;
+      const Box<3> box = box_around(part);
+      return StudyZone{part.name, ZoneBox{box.lo, box.hi}};
+    }
+    return Error{Code::usage, "There is no body \"" + body->name + "\" to be the domain.",
+                 "Choose another domain."};
+  }
+  if (const auto* box = std::get_if<ZoneBox>(&domain)) {
+    hull.shape = *box;
+  } else if (const auto* cylinder = std::get_if<ZoneCylinder>(&domain)) {
+    hull.shape = *cylinder;
+  } else {
+    const auto* margin = std::get_if<DomainMargin>(&domain);
+    Box<3> around;
+    for (const Part& part : parts) around.add(box_around(part));
+    for (const StudyZone& zone : study.zones) {
+      const Box<3> own = make_zone(zone, study.zones)->box();
+      if ((own.hi - own.lo).allFinite()) around.add(own);
+    }
+    if (!((around.hi - around.lo).minCoeff() > 0))
+      return Error{Code::usage, "The bodies have no box that a margin could be put around.",
+                   "Give the domain as a box or a cylinder."};
+    const double share = margin ? margin->share : DomainMargin{}.share;
+    const Vec<3> grow = Vec<3>::Constant(share * (around.hi - around.lo).norm());
+    hull.shape = ZoneBox{around.lo - grow, around.hi + grow};
+  }
+  return hull;
+}
+
+Result<StudyOverlaps> study_overlaps(const Study& study, const std::vector<Part>& parts,
+                                     OverlapOptions options, const Progress& progress) {
+  const auto* outside = study.domain ? std::get_if<DomainBody>(&study.domain->shape) : nullptr;
+  const auto is_domain = [&](const std::string& name) { return outside && outside->name == name; };
+  std::vector<Region<3>> regions;
+  for (const Part& part : parts)
+    if (!is_domain(part.name)) regions.push_back({part.name, surface_zone<3>(part.surface)});
+  for (const StudyZone& zone : study.zones)
+    if (!is_domain(zone.name)) regions.push_back({zone.name, make_zone(zone, study.zones)});
+  if (study.domain) {
+    const Result<StudyZone> hull = domain_hull(study, parts);
+    if (!hull) return hull.error();
+    const Box<3> box = make_zone(*hull, {*hull})->box();
+    if ((box.hi - box.lo).allFinite()) options.within = box;
+  }
+  options.threads = study.options.threads;
+  const Partition<3> partition(std::move(regions));
+  Result<OverlapReport> report = find_overlaps(partition, options, progress);
+  if (!report) return report.error();
+  return StudyOverlaps{partition.names(), std::move(*report)};
+}
+
+}  // namespace lamella

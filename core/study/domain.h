@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/geometry/surface.h"
+#include "core/multidomain/overlap.h"
+#include "core/study/study.h"
+
+namespace lamella {
+
+/// Whether one mesh of all bodies has something around them that is no body itself.
+bool has_background(const Study& study);
+
+/// Gives every part and zone its settings, in this order, and the background last, where there is
+/// one: with two layers and out of sight, unless the study says more. Others go.
+void arrange_bodies(Study& study, const std::vector<Part>& parts);
+
+/// The domain as a zone: a part as the box around it, the union of the bodies as the box with a
+/// margin in which they are meshed. Errors: usage (no domain, no body of that name, no box).
+Result<StudyZone> domain_hull(const Study& study, const std::vector<Part>& parts);
+
+struct StudyOverlaps {
+  std::vector<std::string> names;  ///< [region of the report]
+  OverlapReport report;
+};
+
+/// Overlaps and gaps between the parts and zones but the domain, within it where there is one.
+/// Errors: as `find_overlaps`.
+Result<StudyOverlaps> study_overlaps(const Study& study, const std::vector<Part>& parts,
+                                     OverlapOptions options = {}, const Progress& progress = {});
+
+}  // namespace lamella

@@ -1,0 +1,113 @@
+#include <QElapsedTimer>
+#include <algorithm>
+
+#include "core/geometry/soup.h"
+#include "ui/session/session.h"
+#include "ui/session/zone_shapes.h"
+
+// The part of a session that knows of bodies without a file, and of several in one place.
+namespace lamella::ui {
+
+bool Session::follow_bodies() {
+  const auto same = [&](const auto& a, const auto& b) {
+    return a.zones == b.zones && a.domain == b.domain && a.bodies.size() == b.bodies.size();
+  };
+  if (shaped_ && shaped_parts_ == parts_ && same(*shaped_, *study_)) return false;
+  if (!shaped_ || shaped_parts_ != parts_ || shaped_->zones != study_->zones) drop_overlaps();
+  const std::shared_ptr<const std::vector<Part>> old = shapes_;
+  shapes_ = parts_;
+  if (study_->bodies.size() > parts_->size()) {
+    auto all = std::make_shared<std::vector<Part>>(*parts_);
+    for (std::size_t k = parts_->size(); k < study_->bodies.size(); ++k) {
+      Part shape;
+      shape.name = study_->bodies[k].name;
+      // Until its own arrives the last one will do.
+      for (const Part& known : *old)
+        if (known.name == shape.name) shape = known;
+      all->push_back(std::move(shape));
+    }
+    shapes_ = all;
+  }
+  if (!study_->domain) hull_ = {};
+  shaped_ = study_;
+  shaped_parts_ = parts_;
+  ++shaped_round_;
+  std::erase_if(selection_, [&](int k) { return k >= static_cast<int>(study_->bodies.size()); });
+  if (std::find(selection_.begin(), selection_.end(), selected_) == selection_.end())
+    selected_ = selection_.empty() ? -1 : selection_.back();
+  if (shaper_.busy())
+    shaper_.cancel();
+  else
+    take_zone_shapes();
+  return true;
+}
+
+void Session::take_zone_shapes() {
+  if (study_->zones.empty() && !study_->domain) return;
+  if (drawn_round_ == shaped_round_) return;
+  shaper_.start([this, study = shaped_, parts = parts_,
+                 round = shaped_round_](const Progress& progress) -> Worker::Done {
+    ZoneShapes made = zone_shapes(*study, *parts, progress);
+    return [this, round, made = std::move(made)]() mutable {
+      if (round != shaped_round_) return;
+      drawn_round_ = round;
+      auto all = std::make_shared<std::vector<Part>>(*shapes_);
+      for (std::size_t z = 0; z < made.zones.size(); ++z) {
+        Part& shape = (*all)[parts_->size() + z];
+        shape.surface = std::move(made.zones[z]);
+        shape.cad_volume = enclosed_measure(shape.surface);
+      }
+      shapes_ = all;
+      hull_ = std::move(made.hull);
+      Q_EMIT surfaces_changed();
+    };
+  });
+}
+
+void Session::drop_overlaps() {
+  if (!overlaps_) return;
+  overlaps_.reset();
+  Q_EMIT overlaps_changed();
+}
+
+void Session::remove_zone(int index) {
+  if (!is_zone(index)) return;
+  Study study = *study_;
+  const std::string name = study.bodies[static_cast<std::size_t>(index)].name;
+  study.zones.erase(study.zones.begin() + (index - static_cast<int>(parts_->size())));
+  std::erase_if(study.sizing, [&](const SizingObject& object) { return object.body == name; });
+  if (study.domain && study.domain->shape == decltype(study.domain->shape){DomainBody{name}})
+    study.domain = StudyDomain{DomainBodies{}};
+  // The last body takes what is around it along.
+  if (study.zones.empty() && parts_->empty()) study.domain.reset();
+  arrange_bodies(study, *parts_);
+  edit(tr("Remove zone %1").arg(QString::fromStdString(name)), std::move(study));
+}
+
+void Session::look_for_overlaps(double gap_width) {
+  if (activity_ != Activity::idle || !has_bodies()) return;
+  Q_EMIT logged(tr("Looking for overlaps and gaps"));
+  begin(
+      Activity::checking,
+      [this, study = study_, parts = parts_, gap_width](const Progress& progress) -> Worker::Done {
+        QElapsedTimer clock;
+        clock.start();
+        OverlapOptions options;
+        options.gap_width = gap_width;
+        Result<StudyOverlaps> found =
+            study_overlaps(*study, *parts, options, progress.portion(0, 1, "overlaps and gaps"));
+        const double seconds = static_cast<double>(clock.elapsed()) / 1000;
+        return [this, found = std::move(found), parts, study, gap_width, seconds]() mutable {
+          set_activity(Activity::idle);
+          if (!found) return report(found.error());
+          if (parts != parts_ || study->zones != study_->zones) return;
+          Q_EMIT logged(tr("%1 overlaps and %2 gaps")
+                            .arg(found->report.overlaps.size())
+                            .arg(found->report.gaps.size()));
+          overlaps_ = OverlapCheck{std::move(*found), gap_width, seconds};
+          Q_EMIT overlaps_changed();
+        };
+      });
+}
+
+}  // namespace lamella::ui
