@@ -22,6 +22,7 @@
 #include "core/natural/natural_metric.h"
 #include "core/optimize/adapt.h"
 #include "core/sizing/sizing_field.h"
+#include "core/study/domain.h"
 #include "core/study/first_mesh.h"
 #include "core/study/measure.h"
 #include "core/study/request.h"
@@ -40,15 +41,14 @@ double seconds_since(Clock::time_point start) {
 constexpr double kFirstMeshShare = 0.1;  // of the progress
 constexpr double kAskedScale = kAskedFiner * kAskedFiner;
 constexpr double kSettledNodes = 0.03, kSettledError = 0.03;  // relative changes
-constexpr int kReportDepth = 6;       // bisections for the figures that are reported
-constexpr int kCells = 6;             // of the first mesh of a box, along its longest side
-constexpr double kOfLayer = 0.25;     // size across a fuzzy border, of the thinnest layer
-constexpr double kOfLayerCut = 0.5;   // the same of a border that the mesh is cut along
-constexpr double kSlope = 1;          // growth of that size with the distance
-constexpr double kGrowth = 0.7;       // of a neighbor's sizes with the distance in its metric: ln 2
-constexpr double kChordShare = 0.6;   // of the tolerance, that chords of borders are asked for
-constexpr int kRoundsToCut = 2;       // adaptions to fuzzy borders before the mesh is cut
-constexpr int kBackgroundLayers = 2;  // unless the study says more
+constexpr int kReportDepth = 6;      // bisections for the figures that are reported
+constexpr int kCells = 6;            // of the first mesh of a box, along its longest side
+constexpr double kOfLayer = 0.25;    // size across a fuzzy border, of the thinnest layer
+constexpr double kOfLayerCut = 0.5;  // the same of a border that the mesh is cut along
+constexpr double kSlope = 1;         // growth of that size with the distance
+constexpr double kGrowth = 0.7;      // of a neighbor's sizes with the distance in its metric: ln 2
+constexpr double kChordShare = 0.6;  // of the tolerance, that chords of borders are asked for
+constexpr int kRoundsToCut = 2;      // adaptions to fuzzy borders before the mesh is cut
 
 /// A body or what is around all of them: a region of the partition.
 struct Member {
@@ -70,13 +70,6 @@ void append_reversed(const ReferenceSurface<3>& surface, ReferenceSurface<3>& al
     all.facets.push_back({f[0] + shift, f[2] + shift, f[1] + shift});
   for (const std::int32_t face : surface.facet_face) all.facet_face.push_back(face + faces);
   all.faces.insert(all.faces.end(), surface.faces.begin(), surface.faces.end());
-}
-
-Box<3> box_of(const std::vector<Member>& members) {
-  Box<3> box;
-  for (const Member& member : members)
-    for (const Vec<3>& p : member.part.surface.points) box.add(p);
-  return box;
 }
 
 class AssemblyLoop {
@@ -233,7 +226,7 @@ class AssemblyLoop {
       if (zone.name == background) continue;
       regions.push_back({zone.name, make_zone(zone, study_.zones)});
     }
-    Result<StudyZone> hull = domain_zone(background);
+    Result<StudyZone> hull = domain_hull(study_, parts);
     if (!hull) return hull.error();
     const double diagonal = domain_diagonal(*hull, outside);
     chord_tolerance_ = options_.chord_tolerance.value_or(1e-3 * diagonal);
@@ -311,7 +304,7 @@ class AssemblyLoop {
     const ReferenceSurface<3>& surface = member.part.surface;
     const BodySettings settings = settings_of(study_, member.part.name);
     member.natural = natural_params(study_, member.part);
-    if (member.part.name == kBackground && settings == settings_of(Study{}, kBackground))
+    if (member.part.name == kBackground && !names_background(study_))
       member.natural.layers = kBackgroundLayers;
     member.detector = std::make_unique<NaturalDetector>(surface);
     Result<SizingField> sizing = SizingField::make(sizing_of(study_, member.part.name), surface);
@@ -346,36 +339,6 @@ class AssemblyLoop {
     });
     std::sort(found.begin(), found.end());
     return found.empty() ? diagonal_of(s.points) : found[found.size() / 20];
-  }
-
-  /// The domain as a box or a cylinder; a domain that is a part is the box around it.
-  Result<StudyZone> domain_zone(const std::string& background) const {
-    StudyZone zone;
-    zone.name = background;
-    const auto& domain = study_.domain->shape;
-    if (const auto* box = std::get_if<ZoneBox>(&domain)) {
-      zone.shape = *box;
-    } else if (const auto* cylinder = std::get_if<ZoneCylinder>(&domain)) {
-      zone.shape = *cylinder;
-    } else if (const auto* body = std::get_if<DomainBody>(&domain)) {
-      for (const StudyZone& candidate : study_.zones)
-        if (candidate.name == body->name) return candidate;
-      zone.shape = ZoneBox{};
-    } else {
-      const auto* margin = std::get_if<DomainMargin>(&domain);
-      Box<3> around = box_of(members_);
-      for (const StudyZone& other : study_.zones) {
-        const Box<3> b = make_zone(other, study_.zones)->box();
-        if ((b.hi - b.lo).allFinite()) around.add(b);
-      }
-      if (!((around.hi - around.lo).minCoeff() > 0))
-        return Error{Code::usage, "The bodies have no box that a margin could be put around.",
-                     "Give the domain as a box or a cylinder."};
-      const Vec<3> grow = Vec<3>::Constant((margin ? margin->share : DomainMargin{}.share) *
-                                           (around.hi - around.lo).norm());
-      zone.shape = ZoneBox{around.lo - grow, around.hi + grow};
-    }
-    return zone;
   }
 
   double domain_diagonal(const StudyZone& hull, const std::optional<Part>& outside) const {

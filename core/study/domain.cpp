@@ -8,8 +8,6 @@ namespace lamella {
 
 namespace {
 
-constexpr int kBackgroundLayers = 2;
-
 Box<3> box_around(const Part& part) {
   Box<3> box;
   for (const Vec<3>& p : part.surface.points) box.add(p);
@@ -22,14 +20,18 @@ bool has_background(const Study& study) {
   return study.domain && !std::holds_alternative<DomainBody>(study.domain->shape);
 }
 
+bool names_background(const Study& study) {
+  return std::any_of(study.bodies.begin(), study.bodies.end(),
+                     [](const BodySettings& body) { return body.name == kBackground; });
+}
+
 void arrange_bodies(Study& study, const std::vector<Part>& parts) {
   std::vector<BodySettings> bodies;
   for (const Part& part : parts) bodies.push_back(settings_of(study, part.name));
   for (const StudyZone& zone : study.zones) bodies.push_back(settings_of(study, zone.name));
   if (has_background(study)) {
     bodies.push_back(settings_of(study, kBackground));
-    if (std::none_of(study.bodies.begin(), study.bodies.end(),
-                     [](const BodySettings& body) { return body.name == kBackground; })) {
+    if (!names_background(study)) {
       bodies.back().layers = kBackgroundLayers;
       bodies.back().visible = false;
     }

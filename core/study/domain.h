@@ -11,6 +11,10 @@ namespace lamella {
 /// Whether one mesh of all bodies has something around them that is no body itself.
 bool has_background(const Study& study);
 
+/// Layers through what is around the bodies, unless the study has settings for it.
+inline constexpr int kBackgroundLayers = 2;
+bool names_background(const Study& study);
+
 /// Gives every part and zone its settings, in this order, and the background last, where there is
 /// one: with two layers and out of sight, unless the study says more. Others go.
 void arrange_bodies(Study& study, const std::vector<Part>& parts);

@@ -21,6 +21,9 @@ Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
   for (const Part& part : parts) names.push_back(part.name);
   for (const StudyZone& zone : study.zones) names.push_back(zone.name);
   if (study.domain) names.emplace_back(kBackground);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (std::count(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) > 0)
+      return usage("Two bodies are called \"" + names[i] + "\".", "Rename the zone.");
   for (const std::string& name : names) {
     const BodySettings body = settings_of(study, name);
     const std::string who = "Body \"" + name + "\": ";

@@ -98,6 +98,7 @@ std::string domain_options(const Study& study) {
     text += "bodies";
   const StudyOptions& o = study.options;
   const StudyOptions usual;
+  for (const std::string& name : study.dropped) text += " --drop " + quoted(name);
   if (o.interfaces != usual.interfaces)
     text += " --interfaces " + std::string(interfaces_name(o.interfaces));
   if (o.capture != usual.capture) text += " --capture " + std::string(capture_name(o.capture));

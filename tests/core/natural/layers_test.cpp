@@ -123,5 +123,36 @@ TEST(Layers, ThreadsChangeNothingAndRequestsAreChecked) {
             Code::cancelled);
 }
 
+TEST(Layers, WithinALargerMeshTheyAreCountedFromWallToWall) {
+  // Ten layers in the block, four of them in the plate that it holds.
+  const auto mesh = box_mesh<3>({10, 10, 10}, {0, 0, 0}, {2, 2, 1});
+  const auto plate = box_surface({1.4, 1.4, 0.4}, {1, 1, 0.4});
+  const auto layers = measure_layers_within(mesh, plate, 4);
+  ASSERT_TRUE(layers.ok());
+  ASSERT_GT(layers->stats.places, 20u);
+  EXPECT_NEAR(layers->stats.mean, 4, 1e-5);
+  EXPECT_NEAR(layers->stats.p95, 4, 1e-5);
+  EXPECT_TRUE(layers->below.empty());
+  for (std::size_t i = 1; i < mesh.points.size(); ++i) {
+    const bool far = (mesh.points[i] - Vec<3>(1, 1, 0.4)).cwiseAbs().maxCoeff() > 0.95;
+    EXPECT_TRUE(!far || std::isnan(layers->at_node[i]));
+  }
+  EXPECT_FALSE(measure_layers_within(mesh, plate, 5)->below.empty());
+  // What sticks out of the mesh is not measured.
+  EXPECT_EQ(measure_layers_within(mesh, box_surface({1, 1, 0.4}, {9, 9, 0.4}), 4)->stats.places,
+            0u);
+}
+
+TEST(Layers, OfABoundaryLayerAreCountedToItsThickness) {
+  const auto mesh = box_mesh<3>({5, 5, 10}, {0, 0, 0}, {2, 2, 1});
+  const auto top = measure_boundary_layer(mesh, {5}, 0.3, 3);
+  ASSERT_TRUE(top.ok());
+  EXPECT_EQ(top->stats.places, 50u);
+  EXPECT_NEAR(top->stats.mean, 3, 1e-6);
+  EXPECT_NEAR(top->stats.p5, 3, 1e-6);
+  EXPECT_EQ(measure_boundary_layer(mesh, {}, 0.3, 3)->stats.places, mesh.facets.size());
+  EXPECT_EQ(measure_boundary_layer(mesh, {5}, 0, 3).error().code, Code::usage);
+}
+
 }  // namespace
 }  // namespace lamella
