@@ -33,6 +33,8 @@ constexpr double face_share = 0.9;
 /// Rounds of looking for elements that a border passes through, and of the tolerance: how deep.
 constexpr int pierced_rounds = 12;
 constexpr double pierced_share = 0.8;
+/// The least barycentric weight of a node there.
+constexpr double least_weight = 0.08;
 /// Rounds of halving edges that are too far.
 constexpr int bend_rounds = 4;
 
@@ -320,21 +322,24 @@ class Cutter {
     if (!(f0 * f1 < 0)) {
       constexpr int samples = 8;
       double last_t = 0, last = f0;
+      std::array<double, 2> most{std::max(f0, f1), std::max(-f0, -f1)};  // outside, inside
       bool found = false;
-      for (int i = 1; i <= samples && !found; ++i) {
+      for (int i = 1; i <= samples; ++i) {
         const double t = static_cast<double>(i) / samples;
-        const double f = i == samples ? f1 : phi_at(at(a) + t * e);
+        const double f = i == samples ? phi_[b] : phi_at(at(a) + t * e);
         if (std::abs(f) <= dip && i < samples) continue;
         if (f == 0) continue;
-        if (last * f < 0) {
+        if (!found && last * f < 0) {
           t0 = last_t, f0 = last, t1 = t, f1 = f;
           found = true;
         }
+        double& side = most[f < 0 ? 1 : 0];
+        side = std::max(side, std::abs(f));
         last_t = t;
         last = f;
       }
       if (!found) return std::nullopt;
-      deep = std::min(std::abs(f0), std::abs(f1));
+      deep = std::min(most[0], most[1]);
     }
     // Regula falsi, Illinois.
     double t = t0;
@@ -452,21 +457,31 @@ class Cutter {
         std::vector<double> share;
         double sum = 0;
         for (int k = 0; k < 4; ++k)
-          if (w[k] > 1e-3) {
+          if (w[k] > least_weight) {
             of.push_back(nodes[k]);
             share.push_back(w[k]);
             sum += w[k];
           }
-        for (double& k : share) k /= sum;
         if (of.size() < 2 || !mesh_.hold(of).free()) continue;
-        const bool inside = of.size() == 4;
-        Vec<3> x = where[i]->point;
-        if (!inside) {
-          x.setZero();
-          for (std::size_t k = 0; k < of.size(); ++k) x += share[k] * at(of[k]);
+        Vec<3> x = Vec<3>::Zero();
+        double reach = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < of.size(); ++k) {
+          share[k] /= sum;
+          x += share[k] * at(of[k]);
         }
-        if (mesh_.split_at(of, x, share) == 0) continue;
-        phi_.push_back(0);
+        for (NodeId n : of) reach = std::min(reach, (at(n) - x).norm());
+        // On the border, unless that is far.
+        const ZoneDistance<3> d = partition_.zone(zone_).at(x);
+        const Vec<3> foot = x - d.distance * d.normal;
+        NodeId n = 0;
+        if (std::abs(d.distance) < 0.5 * reach && std::abs(phi_at(foot)) <= mesh_.on)
+          n = mesh_.split_at(of, foot, share);
+        if (n != 0) {
+          phi_.push_back(0);
+        } else {
+          if (mesh_.split_at(of, x, share) == 0) continue;
+          phi_.push_back(std::abs(d.distance) <= mesh_.on ? 0 : d.distance);
+        }
         for (NodeId n : nodes) used[n] = 1;
       }
       if (mesh_.topo.points.size() == first) break;
@@ -491,9 +506,10 @@ class Cutter {
       for (int j = 0; i + j <= order; ++j)
         for (int k = 0; i + j + k <= order; ++k) {
           const int l = order - i - j - k;
+          const bool corner = std::max({i, j, k, l}) == order;
           double f = 0;
           const Vec<3> x = (i * p[0] + j * p[1] + k * p[2] + l * p[3]) / order;
-          if (i == order || j == order || k == order || l == order) {
+          if (corner) {
             f = phi_[nodes[i == order ? 0 : j == order ? 1 : k == order ? 2 : 3]];
           } else {
             f = phi_at(x);
@@ -531,6 +547,22 @@ class Cutter {
     return -1;
   }
 
+  /// The signed distance where it is largest in an element with all nodes on the border.
+  double deepest(const Element& nodes) const {
+    constexpr int order = 5;
+    double most = 0;
+    for (int i = 1; i < order; ++i)
+      for (int j = 1; i + j < order; ++j)
+        for (int k = 1; i + j + k < order; ++k) {
+          const int l = order - i - j - k;
+          const double f = phi_at((i * at(nodes[0]) + j * at(nodes[1]) + k * at(nodes[2]) +
+                                   l * at(nodes[3])) /
+                                  order);
+          if (std::abs(f) > std::abs(most)) most = f;
+        }
+    return most;
+  }
+
   void tag() {
     std::vector<std::int32_t> inside, flat;
     for (std::int32_t e = 0; e < mesh_.count(); ++e) {
@@ -540,7 +572,7 @@ class Cutter {
       for (NodeId n : nodes)
         if (std::abs(phi_[n]) > std::abs(most)) most = phi_[n];
       if (most == 0) {
-        most = phi_at((at(nodes[0]) + at(nodes[1]) + at(nodes[2]) + at(nodes[3])) / 4);
+        most = deepest(nodes);
         if (std::abs(most) <= dip_share * params_.tolerance) flat.push_back(e);
       }
       if (most < 0) inside.push_back(e);
