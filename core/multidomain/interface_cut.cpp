@@ -473,10 +473,9 @@ class Cutter {
         // On the border, unless that is far.
         const ZoneDistance<3> d = partition_.zone(zone_).at(x);
         const Vec<3> foot = x - d.distance * d.normal;
-        NodeId n = 0;
-        if (std::abs(d.distance) < 0.5 * reach && std::abs(phi_at(foot)) <= mesh_.on)
-          n = mesh_.split_at(of, foot, share);
-        if (n != 0) {
+        const bool settles =
+            std::abs(d.distance) < 0.5 * reach && std::abs(phi_at(foot)) <= mesh_.on;
+        if (settles && mesh_.split_at(of, foot, share) != 0) {
           phi_.push_back(0);
         } else {
           if (mesh_.split_at(of, x, share) == 0) continue;
