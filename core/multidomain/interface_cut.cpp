@@ -17,8 +17,11 @@ namespace {
 
 /// Of the tolerance: how far an edge may dip through a border, and through a smooth one, where the
 /// chord of a curved border does.
-constexpr double dip_share = 0.25;
+constexpr double dip_share = 0.03;
 constexpr double smooth_dip_share = 0.3;
+/// Of the tolerance: nodes of feature edges this near to a border count as on it. Edges at them may
+/// dip as far.
+constexpr double feature_share = 0.25;
 /// Cosine between normals of a border above which it is smooth.
 constexpr double smooth_turn = 0.8;
 /// Of the tolerance: what the straight pieces of a feature line may take.
@@ -267,6 +270,7 @@ class Cutter {
       if (mesh_.active(e))
         for (NodeId n : mesh_.topo.elements[e]) wanted[n] = 1;
     phi_.assign(mesh_.topo.points.size(), 0);
+    slack_.assign(phi_.size(), 0);
     nodes_.clear();
     for (std::size_t n = 1; n < wanted.size(); ++n)
       if (wanted[n]) nodes_.push_back(static_cast<NodeId>(n));
@@ -278,8 +282,10 @@ class Cutter {
       const double beyond = (x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm();
       phi_[n] = mesh_.metric[n].quad(Vec<3>::Constant(beyond)) > 100 ? beyond : phi_at(x);
       if (std::abs(phi_[n]) <= mesh_.exact ||
-          (mesh_.locked[n] && std::abs(phi_[n]) <= dip_share * params_.tolerance))
+          (mesh_.locked[n] && std::abs(phi_[n]) <= feature_share * params_.tolerance)) {
+        slack_[n] = std::abs(phi_[n]);
         phi_[n] = 0;
+      }
     });
   }
 
@@ -316,7 +322,10 @@ class Cutter {
     const double length = e.norm();
     if (std::abs(phi_[a]) + std::abs(phi_[b]) >= length && phi_[a] * phi_[b] >= 0)
       return std::nullopt;
-    const double dip = dip_share * params_.tolerance;
+    const auto slack = [&](NodeId n) {
+      return static_cast<std::size_t>(n) < slack_.size() ? slack_[n] : 0;
+    };
+    const double dip = dip_share * params_.tolerance + std::max(slack(a), slack(b));
     double deep = std::numeric_limits<double>::infinity();
     double t0 = 0, f0 = phi_[a], t1 = 1, f1 = phi_[b];
     if (!(f0 * f1 < 0)) {
@@ -688,6 +697,7 @@ class Cutter {
   CutTopology mesh_;
   int zone_ = 0;
   std::vector<double> phi_;    ///< [node] of the zone that is being cut
+  std::vector<double> slack_;  ///< [node that was there before edges were split] how far off it is
   std::vector<NodeId> nodes_;  ///< of the background
   std::size_t lost_ = 0;
 };
