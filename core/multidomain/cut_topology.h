@@ -51,9 +51,9 @@ class CutTopology {
   /// all elements that contain them. 0 when an element would be turned or flat.
   NodeId split_at(std::span<const NodeId> of, const Vec<3>& x, std::span<const double> weights);
   /// Brings a node to x, which lies in the element: one that is there, a near one that may move, or
-  /// a new one, and locks it. `weights` that are zero are so on purpose. On the way from a node to
-  /// `goal` it may be what is locked already nearby, if that is nearer to the goal. 0 when it cannot
-  /// be done.
+  /// a new one, and locks it. `weights` that are zero are so on purpose. It may be what is locked
+  /// already nearby, on the way from a node to `goal` if that is nearer to the goal. 0 when it
+  /// cannot be done.
   NodeId bring_node(std::int32_t e, const Weights& weights, const Vec<3>& x, NodeId from = 0,
                     const Vec<3>& goal = Vec<3>::Zero());
 

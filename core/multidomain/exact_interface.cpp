@@ -22,7 +22,7 @@ constexpr double face_turn = 0.4;
 /// Growth of the metric's determinant that calls for a finer mesh before it is cut.
 constexpr double finer_share = 1.5;
 /// Of the distance from what is curved: how sizes along it grow.
-constexpr double chord_growth = 0.5;
+constexpr double chord_growth = 0.7;
 
 std::int32_t face_count(const std::vector<std::int32_t>& facet_face) {
   std::int32_t faces = 0;

@@ -38,6 +38,8 @@ constexpr int pierced_rounds = 12;
 constexpr double pierced_share = 0.8;
 /// The least barycentric weight of a node there.
 constexpr double least_weight = 0.08;
+/// Metric distance from a node within which there is no other to open an element.
+constexpr double heap = 0.05;
 /// Rounds of halving edges that are too far.
 constexpr int bend_rounds = 4;
 
@@ -472,6 +474,11 @@ class Cutter {
             sum += w[k];
           }
         if (of.size() < 2 || !mesh_.hold(of).free()) continue;
+        // Nodes in a heap would help nobody.
+        if (std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) {
+              return mesh_.metric[n].quad(at(n) - where[i]->point) < heap * heap;
+            }))
+          continue;
         Vec<3> x = Vec<3>::Zero();
         double reach = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < of.size(); ++k) {
