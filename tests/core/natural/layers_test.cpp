@@ -126,7 +126,7 @@ TEST(Layers, ThreadsChangeNothingAndRequestsAreChecked) {
 TEST(Layers, WithinALargerMeshTheyAreCountedFromWallToWall) {
   // Ten layers in the block, four of them in the plate that it holds.
   const auto mesh = box_mesh<3>({10, 10, 10}, {0, 0, 0}, {2, 2, 1});
-  const auto plate = box_surface({1.4, 1.4, 0.4}, {1, 1, 0.4});
+  const auto plate = moved<3>(box_surface({1.4, 1.4, 0.4}), Mat<3>::Identity(), {0.3, 0.3, 0.2});
   const auto layers = measure_layers_within(mesh, plate, 4);
   ASSERT_TRUE(layers.ok());
   ASSERT_GT(layers->stats.places, 20u);
@@ -139,7 +139,9 @@ TEST(Layers, WithinALargerMeshTheyAreCountedFromWallToWall) {
   }
   EXPECT_FALSE(measure_layers_within(mesh, plate, 5)->below.empty());
   // What sticks out of the mesh is not measured.
-  EXPECT_EQ(measure_layers_within(mesh, box_surface({1, 1, 0.4}, {9, 9, 0.4}), 4)->stats.places,
+  EXPECT_EQ(measure_layers_within(
+                mesh, moved<3>(box_surface({1, 1, 0.4}), Mat<3>::Identity(), {9, 9, 0.2}), 4)
+                ->stats.places,
             0u);
 }
 

@@ -411,25 +411,25 @@ TEST(SizingField, ABoundaryLayerIsThinAcrossItsFacesOnly) {
   asked.layers = 3;
   const SizingField field = field_of({{"skin", "", top, asked}});
   const Metric<3> natural = isotropic_metric<3>(1);
-  const double across = size_from_eigenvalue(field.apply({0, 0, 0.9}, natural)(2, 2));
+  const double across = size_from_eigenvalue(field.apply({5, 5, 1.9}, natural)(2, 2));
   // A little finer than the third of it, the same throughout the layer.
   EXPECT_LT(across, 0.1);
   EXPECT_GT(across, 0.08);
   for (const double depth : {0.0, 0.2, 0.299}) {
-    const Metric<3> m = field.apply({1, 2, 1 - depth}, natural);
+    const Metric<3> m = field.apply({4, 6, 2 - depth}, natural);
     EXPECT_NEAR(size_from_eigenvalue(m(2, 2)), across, 1e-9);
     EXPECT_NEAR(m(0, 0), 1, 1e-9);
     EXPECT_NEAR(m(1, 1), 1, 1e-9);
   }
-  const Metric<3> beyond = field.apply({0, 0, 0.5}, natural);
+  const Metric<3> beyond = field.apply({5, 5, 1.5}, natural);
   EXPECT_NEAR(size_from_eigenvalue(beyond(2, 2)), across + 0.2 * std::log(1.5), 1e-9);
-  EXPECT_EQ(field.apply({0, 0, -1}, isotropic_metric<3>(0.2)), isotropic_metric<3>(0.2));
+  EXPECT_EQ(field.apply({5, 5, 0.1}, isotropic_metric<3>(0.2)), isotropic_metric<3>(0.2));
 
   FacesShape others = top;
   others.others = true;
   const SizingField rest = field_of({{"skin", "", others, asked}});
-  EXPECT_EQ(rest.apply({0, 0, 0.9}, isotropic_metric<3>(0.2)), isotropic_metric<3>(0.2));
-  EXPECT_GT(rest.apply({4.9, 0, 0}, natural)(0, 0), 100);
+  EXPECT_EQ(rest.apply({5, 5, 1.9}, isotropic_metric<3>(0.2)), isotropic_metric<3>(0.2));
+  EXPECT_GT(rest.apply({9.9, 5, 1}, natural)(0, 0), 100);
   asked.thickness = 0;
   const SizingObject none{"skin", "", top, asked};
   EXPECT_EQ(SizingField::make({none}, named_box()).error().code, Code::usage);
