@@ -14,8 +14,6 @@ constexpr double close = 0.12;
 constexpr double least_part = 0.2;
 /// Of the tolerance: nodes this near to a border lie on it.
 constexpr double on_share = 0.02;
-/// Of the tolerance: features this near to each other are one.
-constexpr double merge_share = 0.2;
 
 }  // namespace
 
@@ -24,7 +22,6 @@ CutTopology::CutTopology(const SimplexMesh<3>& mesh, const MetricField<3>& field
                          const MetricFunction<3>& metric_at)
     : first_interface(static_cast<std::int32_t>(mesh.facets.size())),
       on(on_share * params.tolerance),
-      merge(merge_share * params.tolerance),
       partition_(partition),
       metric_at_(metric_at),
       snap_(params.snap) {
@@ -152,11 +149,7 @@ Vec<3> CutTopology::nearest_in(const Element& nodes, unsigned bits, const Weight
   return x / sum;
 }
 
-NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec<3>& x,
-                               NodeId from, const Vec<3>& goal) {
-  const auto onwards = [&](const Vec<3>& y) {
-    return from == 0 || (goal - y).norm() < (goal - at(from)).norm();
-  };
+NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec<3>& x) {
   const Element nodes = topo.elements[e];
   Packed<3> m = Packed<3>::zero();
   for (NodeId n : nodes) m.add(0.25, metric[n]);
@@ -167,7 +160,7 @@ NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec
   for (int k : order) {
     const NodeId n = nodes[k];
     const double d = (at(n) - x).norm();
-    if (d <= exact || (locked[n] && d <= merge && n != from && onwards(at(n)))) {
+    if (d <= exact || (locked[n] && d <= 0.1 * on)) {
       if (!locked[n] && hold_allows(std::array{n}, x)) topo.points[n] = x;
       return lock(n);
     }
@@ -204,17 +197,9 @@ NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec
       if (size < 4) {
         const double off = (x - nearest_in(nodes, c.bits, weights)).norm();
         const bool there = off <= exact;
-        if (!there && size == 2 && features.contains(key(of[0], of[1]))) {
-          // What runs along another feature joins it.
-          const Vec<3> along = at(of[1]) - at(of[0]);
-          const double t = (x - at(of[0])).dot(along) / along.squaredNorm();
-          const Vec<3> y = at(of[0]) + t * along;
-          if (!(t > 0.01 && t < 0.99) || (y - x).norm() > merge || !onwards(y)) continue;
-          if (const NodeId n = split_at(of, y, std::array{1 - t, t})) return lock(n);
-          continue;
-        }
         if (!there && c.far2 > close * close) continue;
         if (!there && !hold_allows(of, x)) continue;
+        if (!there && size == 2 && features.contains(key(of[0], of[1]))) continue;
       }
       if (const NodeId n = split_at(of, x, share)) return lock(n);
     }

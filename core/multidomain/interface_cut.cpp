@@ -19,9 +19,6 @@ namespace {
 /// chord of a curved border does.
 constexpr double dip_share = 0.03;
 constexpr double smooth_dip_share = 0.3;
-/// Of the tolerance: nodes of feature edges this near to a border count as on it. Edges at them may
-/// dip as far.
-constexpr double feature_share = 0.25;
 /// Cosine between normals of a border above which it is smooth.
 constexpr double smooth_turn = 0.8;
 /// Of the tolerance: what the straight pieces of a feature line may take.
@@ -31,15 +28,6 @@ constexpr int split_rounds = 12;
 /// Of the tolerance: how far the middle of an interface's edge may lie from the border; facets add
 /// to it.
 constexpr double bend_share = 0.6;
-/// The same of the points of an interface's facet.
-constexpr double face_share = 0.9;
-/// Rounds of looking for elements that a border passes through, and of the tolerance: how deep.
-constexpr int pierced_rounds = 12;
-constexpr double pierced_share = 0.8;
-/// The least barycentric weight of a node there.
-constexpr double least_weight = 0.08;
-/// Metric distance from a node within which there is no other to open an element.
-constexpr double heap = 0.05;
 /// Rounds of halving edges that are too far.
 constexpr int bend_rounds = 4;
 
@@ -62,8 +50,7 @@ class Cutter {
     if (!follow_features(surface, progress.portion(0, 0.4))) return false;
     if (!measure(progress.portion(0.4, 0.5))) return false;
     if (!snap(progress.portion(0.5, 0.7))) return false;
-    if (!split(1, progress.portion(0.7, 0.8))) return false;
-    if (!open_pierced(progress.portion(0.8, 0.9))) return false;
+    if (!split(progress.portion(0.7, 0.9))) return false;
     tag();
     return bend(progress.portion(0.9, 1));
   }
@@ -247,14 +234,12 @@ class Cutter {
         for (int k = 0; k < 4; ++k)
           if (nodes[k] == now) weights[k] = 1 - sum;
       }
-      const bool last = sum <= 1 + 1e-9 && sum > 1 - 1e-9;
-      const NodeId reached = mesh_.bring_node(into, weights, target, now, x);
+      const NodeId reached = mesh_.bring_node(into, weights, target);
       if (reached == 0 || reached == now) {
         ++lost_;
         return {now, false};
       }
       mesh_.features.insert(mesh_.key(now, reached));
-      if (last) return {reached, true};
       if ((x - at(reached)).norm() >= left) {
         ++lost_;
         return {reached, false};
@@ -272,7 +257,6 @@ class Cutter {
       if (mesh_.active(e))
         for (NodeId n : mesh_.topo.elements[e]) wanted[n] = 1;
     phi_.assign(mesh_.topo.points.size(), 0);
-    slack_.assign(phi_.size(), 0);
     nodes_.clear();
     for (std::size_t n = 1; n < wanted.size(); ++n)
       if (wanted[n]) nodes_.push_back(static_cast<NodeId>(n));
@@ -283,11 +267,8 @@ class Cutter {
       // Far from the box its distance tells enough.
       const double beyond = (x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm();
       phi_[n] = mesh_.metric[n].quad(Vec<3>::Constant(beyond)) > 100 ? beyond : phi_at(x);
-      if (std::abs(phi_[n]) <= mesh_.exact ||
-          (mesh_.locked[n] && std::abs(phi_[n]) <= feature_share * params_.tolerance)) {
-        slack_[n] = std::abs(phi_[n]);
+      if (std::abs(phi_[n]) <= mesh_.exact || (mesh_.locked[n] && std::abs(phi_[n]) <= mesh_.on))
         phi_[n] = 0;
-      }
     });
   }
 
@@ -324,33 +305,27 @@ class Cutter {
     const double length = e.norm();
     if (std::abs(phi_[a]) + std::abs(phi_[b]) >= length && phi_[a] * phi_[b] >= 0)
       return std::nullopt;
-    const auto slack = [&](NodeId n) {
-      return static_cast<std::size_t>(n) < slack_.size() ? slack_[n] : 0;
-    };
-    const double dip = dip_share * params_.tolerance + std::max(slack(a), slack(b));
+    const double dip = dip_share * params_.tolerance;
     double deep = std::numeric_limits<double>::infinity();
     double t0 = 0, f0 = phi_[a], t1 = 1, f1 = phi_[b];
     if (!(f0 * f1 < 0)) {
       constexpr int samples = 8;
       double last_t = 0, last = f0;
-      std::array<double, 2> most{std::max(f0, f1), std::max(-f0, -f1)};  // outside, inside
       bool found = false;
-      for (int i = 1; i <= samples; ++i) {
+      for (int i = 1; i <= samples && !found; ++i) {
         const double t = static_cast<double>(i) / samples;
-        const double f = i == samples ? phi_[b] : phi_at(at(a) + t * e);
+        const double f = i == samples ? f1 : phi_at(at(a) + t * e);
         if (std::abs(f) <= dip && i < samples) continue;
         if (f == 0) continue;
-        if (!found && last * f < 0) {
+        if (last * f < 0) {
           t0 = last_t, f0 = last, t1 = t, f1 = f;
           found = true;
         }
-        double& side = most[f < 0 ? 1 : 0];
-        side = std::max(side, std::abs(f));
         last_t = t;
         last = f;
       }
       if (!found) return std::nullopt;
-      deep = std::min(most[0], most[1]);
+      deep = std::min(std::abs(f0), std::abs(f1));
     }
     // Regula falsi, Illinois.
     double t = t0;
@@ -378,9 +353,8 @@ class Cutter {
     return t;
   }
 
-  /// Splits the edges that cross the border, those between nodes before `first` excepted: they are
-  /// known not to.
-  bool split(std::size_t first, const Progress& progress) {
+  bool split(const Progress& progress) {
+    std::size_t first = 1;  // edges of older nodes are known not to cross
     for (int round = 0; round < split_rounds; ++round) {
       if (progress.cancelled()) return false;
       progress.report(static_cast<double>(round) / split_rounds);
@@ -425,132 +399,6 @@ class Cutter {
     return true;
   }
 
-  /// A border may pass through an element and cross none of its edges, as a rounded corner smaller
-  /// than the element does: it gets a node on the border there.
-  bool open_pierced(const Progress& progress) {
-    std::size_t first = 1;
-    for (int round = 0; round < pierced_rounds; ++round) {
-      if (progress.cancelled()) return false;
-      std::vector<std::int32_t> near;
-      for (std::int32_t e = 0; e < mesh_.count(); ++e) {
-        if (!mesh_.active(e)) continue;
-        const Element& nodes = mesh_.topo.elements[e];
-        if (static_cast<std::size_t>(*std::max_element(nodes.begin(), nodes.end())) < first)
-          continue;
-        double least = std::numeric_limits<double>::infinity(), longest2 = 0;
-        for (int i = 0; i < 4; ++i) {
-          least = std::min(least, std::abs(phi_[nodes[i]]));
-          for (int j = 0; j < i; ++j)
-            longest2 = std::max(longest2, (at(nodes[i]) - at(nodes[j])).squaredNorm());
-        }
-        if (least * least < longest2) near.push_back(e);
-      }
-      std::vector<std::optional<Pierced>> where(near.size());
-      if (!parallel_each(near.size(), params_.threads, progress,
-                         [&](std::size_t i) { where[i] = pierced_at(near[i]); }))
-        return false;
-      first = mesh_.topo.points.size();
-      std::vector<std::size_t> order;
-      for (std::size_t i = 0; i < near.size(); ++i)
-        if (where[i]) order.push_back(i);
-      std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-        return where[i]->depth > where[j]->depth;
-      });
-      // Neighbors are pierced at the same place: they wait for what comes of this one.
-      std::vector<char> used(first, 0);
-      for (std::size_t i : order) {
-        const Element nodes = mesh_.topo.elements[near[i]];
-        if (!mesh_.topo.alive(near[i]) ||
-            std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) { return used[n] != 0; }))
-          continue;
-        const Weights w = mesh_.weights_in(near[i], where[i]->point);
-        std::vector<NodeId> of;
-        std::vector<double> share;
-        double sum = 0;
-        for (int k = 0; k < 4; ++k)
-          if (w[k] > least_weight) {
-            of.push_back(nodes[k]);
-            share.push_back(w[k]);
-            sum += w[k];
-          }
-        if (of.size() < 2 || !mesh_.hold(of).free()) continue;
-        // Nodes in a heap would help nobody.
-        if (std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) {
-              return mesh_.metric[n].quad(at(n) - where[i]->point) < heap * heap;
-            }))
-          continue;
-        Vec<3> x = Vec<3>::Zero();
-        double reach = std::numeric_limits<double>::infinity();
-        for (std::size_t k = 0; k < of.size(); ++k) {
-          share[k] /= sum;
-          x += share[k] * at(of[k]);
-        }
-        for (NodeId n : of) reach = std::min(reach, (at(n) - x).norm());
-        // On the border, unless that is far.
-        const ZoneDistance<3> d = partition_.zone(zone_).at(x);
-        const Vec<3> foot = x - d.distance * d.normal;
-        const bool settles =
-            std::abs(d.distance) < 0.5 * reach && std::abs(phi_at(foot)) <= mesh_.on;
-        if (settles && mesh_.split_at(of, foot, share) != 0) {
-          phi_.push_back(0);
-        } else {
-          if (mesh_.split_at(of, x, share) == 0) continue;
-          phi_.push_back(std::abs(d.distance) <= mesh_.on ? 0 : d.distance);
-        }
-        for (NodeId n : nodes) used[n] = 1;
-      }
-      if (mesh_.topo.points.size() == first) break;
-      if (!split(first, {})) return false;
-    }
-    return true;
-  }
-
-  /// Where the border passes through an element whose edges do not cross it: the point on it next
-  /// to where it is deepest on the smaller side; nothing when that is within the tolerance.
-  struct Pierced {
-    double depth;
-    Vec<3> point;
-  };
-  std::optional<Pierced> pierced_at(std::int32_t e) const {
-    constexpr int order = 6;
-    const Element& nodes = mesh_.topo.elements[e];
-    const Corners<3> p = mesh_.corners(nodes);
-    std::array<double, 2> most{};  // outside, inside
-    std::array<Vec<3>, 2> there{p[0], p[0]};
-    for (int i = 0; i <= order; ++i)
-      for (int j = 0; i + j <= order; ++j)
-        for (int k = 0; i + j + k <= order; ++k) {
-          const int l = order - i - j - k;
-          const bool corner = std::max({i, j, k, l}) == order;
-          double f = 0;
-          const Vec<3> x = (i * p[0] + j * p[1] + k * p[2] + l * p[3]) / order;
-          if (corner) {
-            f = phi_[nodes[i == order ? 0 : j == order ? 1 : k == order ? 2 : 3]];
-          } else {
-            f = phi_at(x);
-          }
-          const int side = f < 0 ? 1 : 0;
-          if (std::abs(f) <= most[side]) continue;
-          most[side] = std::abs(f);
-          there[side] = x;
-        }
-    const int side = most[0] < most[1] ? 0 : 1;
-    if (most[side] <= pierced_share * params_.tolerance) return std::nullopt;
-    // Towards the other side, as far as the element reaches.
-    const Vec<3> from = there[side], to = there[1 - side];
-    double t0 = 0, t1 = 1;
-    for (int i = 0; i < 50 && (t1 - t0) * (to - from).norm() > 1e-3 * mesh_.on; ++i) {
-      const double t = 0.5 * (t0 + t1);
-      ((phi_at(from + t * (to - from)) < 0) == (side == 1) ? t0 : t1) = t;
-    }
-    Vec<3> best = from + 0.5 * (t0 + t1) * (to - from);
-    const ZoneDistance<3> d = partition_.zone(zone_).at(from);
-    const Vec<3> foot = from - d.distance * d.normal;
-    const Weights w = mesh_.weights_in(e, foot);
-    if (*std::min_element(w.begin(), w.end()) > 0.05) best = foot;
-    return Pierced{most[side], best};
-  }
-
   /// The element of the background behind a face of an element; -1: none.
   std::int32_t across(std::int32_t e, int k) const {
     const auto face = opposite_facet<3>(mesh_.topo.elements[e], k);
@@ -562,22 +410,6 @@ class Cutter {
     return -1;
   }
 
-  /// The signed distance where it is largest in an element with all nodes on the border.
-  double deepest(const Element& nodes) const {
-    constexpr int order = 5;
-    double most = 0;
-    for (int i = 1; i < order; ++i)
-      for (int j = 1; i + j < order; ++j)
-        for (int k = 1; i + j + k < order; ++k) {
-          const int l = order - i - j - k;
-          const double f = phi_at((i * at(nodes[0]) + j * at(nodes[1]) + k * at(nodes[2]) +
-                                   l * at(nodes[3])) /
-                                  order);
-          if (std::abs(f) > std::abs(most)) most = f;
-        }
-    return most;
-  }
-
   void tag() {
     std::vector<std::int32_t> inside, flat;
     for (std::int32_t e = 0; e < mesh_.count(); ++e) {
@@ -587,7 +419,7 @@ class Cutter {
       for (NodeId n : nodes)
         if (std::abs(phi_[n]) > std::abs(most)) most = phi_[n];
       if (most == 0) {
-        most = deepest(nodes);
+        most = phi_at((at(nodes[0]) + at(nodes[1]) + at(nodes[2]) + at(nodes[3])) / 4);
         if (std::abs(most) <= dip_share * params_.tolerance) flat.push_back(e);
       }
       if (most < 0) inside.push_back(e);
@@ -653,44 +485,6 @@ class Cutter {
       }
       if (mesh_.topo.points.size() == first) break;
     }
-    return bend_faces(label);
-  }
-
-  /// Puts a node into the facets of the interface whose inner points are too far from the border.
-  bool bend_faces(std::int32_t label) {
-    for (int round = 0; round < bend_rounds; ++round) {
-      std::vector<std::int32_t> facets;
-      for (std::int32_t e = 0; e < mesh_.count(); ++e)
-        if (mesh_.topo.alive(e) && mesh_.topo.is_virtual(e) && mesh_.topo.label[e] == label)
-          facets.push_back(e);
-      std::vector<std::array<double, 3>> worst(facets.size());
-      std::vector<double> off(facets.size(), 0);
-      if (!parallel_each(facets.size(), params_.threads, {}, [&](std::size_t i) {
-            constexpr int order = 6;
-            const Element& v = mesh_.topo.elements[facets[i]];
-            for (int j = 1; j < order; ++j)
-              for (int k = 1; j + k < order; ++k) {
-                const std::array<double, 3> w{j / 6.0, k / 6.0, (order - j - k) / 6.0};
-                const double d =
-                    std::abs(phi_at(w[0] * at(v[1]) + w[1] * at(v[2]) + w[2] * at(v[3])));
-                if (d <= off[i]) continue;
-                off[i] = d;
-                worst[i] = w;
-              }
-          }))
-        return false;
-      bool any = false;
-      for (std::size_t i = 0; i < facets.size(); ++i) {
-        if (off[i] <= face_share * params_.tolerance || !mesh_.topo.alive(facets[i])) continue;
-        const Element v = mesh_.topo.elements[facets[i]];
-        const std::array<NodeId, 3> of{v[1], v[2], v[3]};
-        const auto& w = worst[i];
-        const Vec<3> x = w[0] * at(v[1]) + w[1] * at(v[2]) + w[2] * at(v[3]);
-        const auto y = mesh_.hold(of).settle(partition_, x, mesh_.on);
-        if (y && mesh_.split_at(of, *y, w) != 0) any = true;
-      }
-      if (!any) break;
-    }
     return true;
   }
 
@@ -704,7 +498,6 @@ class Cutter {
   CutTopology mesh_;
   int zone_ = 0;
   std::vector<double> phi_;    ///< [node] of the zone that is being cut
-  std::vector<double> slack_;  ///< [node that was there before edges were split] how far off it is
   std::vector<NodeId> nodes_;  ///< of the background
   std::size_t lost_ = 0;
 };

@@ -185,14 +185,14 @@ Place measure_within(const Mesh& mesh, const Neighbors& neighbors,
   const double least = 1e-7 * surface.diagonal();
   const std::optional<RayHit> hit = surface.exit(at, u, least);
   if (!hit) return place;
-  place.opposite = surface.normal(hit->facet).dot(u) > kParallel;
-  if (!place.opposite) return place;
+  if (!(surface.normal(hit->facet).dot(u) > kParallel)) return place;
   const Located<3> start = elements.locate(at + least * u);
   if (!start.inside) return place;
   const Walk w = walk(mesh, neighbors, start.element, -1, at + least * u, u, hit->t - least);
   place.opposite = w.whole;
   if (!w.whole) return place;
-  place.layers = w.layers;
+  // The walk keeps off both walls by a little.
+  place.layers = w.layers * hit->t / w.length;
   place.crossed = w.crossed;
   place.thin = hit->t < kThin * 2 * climb_to_medial_ball(surface, at).radius;
   return place;

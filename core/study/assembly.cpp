@@ -59,6 +59,7 @@ struct Member {
   LayerCorrection correction;
   std::unique_ptr<const FaceGroups> groups;  ///< null: the study has none on it
   double interface_size = 0;
+  bool endless = false;  ///< a formula that ends with the domain only: the mesh finds its edges
 };
 
 /// The same surface seen from its other side, behind those already in `all`.
@@ -114,7 +115,7 @@ class AssemblyLoop {
     exact.adapt = params;
     std::vector<ReferenceSurface<3>> surfaces;
     for (std::size_t m = 0; m + 1 < members_.size(); ++m)
-      surfaces.push_back(members_[m].part.surface);
+      surfaces.push_back(members_[m].endless ? ReferenceSurface<3>{} : members_[m].part.surface);
     Result<Exact> made =
         exact_interfaces(adapted->mesh, adapted->metric, *partition_, surfaces, exact,
                          progress.portion(0.4, 0.75, "cutting along the borders"), natural_alone());
@@ -237,6 +238,8 @@ class AssemblyLoop {
       if (!surface) return surface.error();
       Member member;
       member.part.name = zone.name;
+      member.endless = std::holds_alternative<ZoneHalfSpace>(zone.shape) ||
+                       std::holds_alternative<ZoneCell>(zone.shape);
       member.part.surface = std::move(*surface);
       member.part.cad_volume = enclosed_measure(member.part.surface);
       members_.push_back(std::move(member));
@@ -432,8 +435,11 @@ class AssemblyLoop {
       if (it == mesh.groups.end()) it = mesh.groups.insert(it, name);
       return static_cast<std::int32_t>(it - mesh.groups.begin());
     };
+    // Endless zones bring faces of their own: those of parts cannot be told by number then.
+    const bool numbered =
+        std::none_of(members_.begin(), members_.end(), [](const Member& m) { return m.endless; });
     std::size_t first = surface.faces.size();
-    for (std::size_t m = members_.size() - 1; m-- > 0;) {
+    for (std::size_t m = members_.size() - 1; numbered && m-- > 0;) {
       const Member& member = members_[m];
       first -= member.part.surface.faces.size();
       for (std::size_t f = 0; member.groups && f < mesh.facets.size(); ++f) {
