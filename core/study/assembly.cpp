@@ -34,10 +34,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 constexpr double kFirstMeshShare = 0.1;  // of the progress
 constexpr double kAskedScale = kAskedFiner * kAskedFiner;
 constexpr double kSettledNodes = 0.03, kSettledError = 0.03;  // relative changes
@@ -61,17 +57,6 @@ struct Member {
   double interface_size = 0;
   bool endless = false;  ///< a formula that ends with the domain only: the mesh finds its edges
 };
-
-/// The same surface seen from its other side, behind those already in `all`.
-void append_reversed(const ReferenceSurface<3>& surface, ReferenceSurface<3>& all) {
-  const auto shift = static_cast<std::int32_t>(all.points.size());
-  const auto faces = static_cast<std::int32_t>(all.faces.size());
-  all.points.insert(all.points.end(), surface.points.begin(), surface.points.end());
-  for (const auto& f : surface.facets)
-    all.facets.push_back({f[0] + shift, f[2] + shift, f[1] + shift});
-  for (const std::int32_t face : surface.facet_face) all.facet_face.push_back(face + faces);
-  all.faces.insert(all.faces.end(), surface.faces.begin(), surface.faces.end());
-}
 
 class AssemblyLoop {
  public:
@@ -556,7 +541,7 @@ class AssemblyLoop {
   void keep(MeshState next, IterationRecord record, Clock::time_point start) {
     record.iteration = static_cast<int>(records_.size());
     sum_layers(record);
-    record.seconds = seconds_since(start);
+    record.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const auto change = [](double a, double b) { return std::abs(a - b) / std::max(b, 1e-300); };
     settled_ = false;
     // Fuzzy and exact interfaces cannot be compared.
@@ -706,7 +691,7 @@ Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
   }
   outcome.bodies = std::move(*closed);
   outcome.converged = !outcome.cancelled && loop.converged();
-  outcome.seconds = seconds_since(start);
+  outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   progress.report(1);
   return outcome;
 }

@@ -16,6 +16,16 @@ Box<3> box_around(const Part& part) {
 
 }  // namespace
 
+void append_reversed(const ReferenceSurface<3>& surface, ReferenceSurface<3>& all) {
+  const auto shift = static_cast<std::int32_t>(all.points.size());
+  const auto faces = static_cast<std::int32_t>(all.faces.size());
+  all.points.insert(all.points.end(), surface.points.begin(), surface.points.end());
+  for (const auto& f : surface.facets)
+    all.facets.push_back({f[0] + shift, f[2] + shift, f[1] + shift});
+  for (const std::int32_t face : surface.facet_face) all.facet_face.push_back(face + faces);
+  all.faces.insert(all.faces.end(), surface.faces.begin(), surface.faces.end());
+}
+
 bool has_background(const Study& study) {
   return study.domain && !std::holds_alternative<DomainBody>(study.domain->shape);
 }

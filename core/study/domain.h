@@ -8,6 +8,9 @@
 
 namespace lamella {
 
+/// Adds the surface seen from its other side behind what is in `all`.
+void append_reversed(const ReferenceSurface<3>& surface, ReferenceSurface<3>& all);
+
 /// Whether one mesh of all bodies has something around them that is no body itself.
 bool has_background(const Study& study);
 
