@@ -142,13 +142,20 @@ void tell_end(const Outcome& outcome, const Report& report, const std::string& s
   for (const BodyOutcome& b : outcome.bodies) {
     char line[240];
     const double difference = b.cad_volume > 0 ? 100 * (b.mesh_volume / b.cad_volume - 1) : 0;
-    std::snprintf(line, sizeof line,
-                  "%s: layers %.2f (5 %%: %.2f) of %d, volume %+.3f %%, boundary within %.3g mm, "
-                  "part within %.3g mm of %.3g mm, first mesh by %s",
-                  b.name.c_str(), b.layers.mean, b.layers.p5, b.layers_asked, difference,
-                  b.boundary_distance.to_surface.distance,
-                  b.boundary_distance.from_surface.distance, b.chord_tolerance,
-                  b.first_mesh_by.c_str());
+    if (outcome.state->filling)
+      std::snprintf(line, sizeof line,
+                    "%s: layers %.2f (5 %%: %.2f) of %d, volume %+.3f %%, interface error %.4f at "
+                    "%.3g mm across",
+                    b.name.c_str(), b.layers.mean, b.layers.p5, b.layers_asked, difference,
+                    b.interface_error, b.interface_size);
+    else
+      std::snprintf(line, sizeof line,
+                    "%s: layers %.2f (5 %%: %.2f) of %d, volume %+.3f %%, boundary within %.3g mm, "
+                    "part within %.3g mm of %.3g mm, first mesh by %s",
+                    b.name.c_str(), b.layers.mean, b.layers.p5, b.layers_asked, difference,
+                    b.boundary_distance.to_surface.distance,
+                    b.boundary_distance.from_surface.distance, b.chord_tolerance,
+                    b.first_mesh_by.c_str());
     console.say(line);
     for (const std::string& note : b.notes) console.say("  note: " + note);
   }
@@ -165,6 +172,8 @@ void tell_end(const Outcome& outcome, const Report& report, const std::string& s
                       {"boundary_to_part", farthest_json(b.boundary_distance.to_surface)},
                       {"part_to_boundary", farthest_json(b.boundary_distance.from_surface)},
                       {"chord_tolerance", b.chord_tolerance},
+                      {"interface_size", b.interface_size},
+                      {"interface_error", b.interface_error},
                       {"first_mesh_by", b.first_mesh_by},
                       {"notes", b.notes}});
   console.emit(dump({{"phase", "done"},

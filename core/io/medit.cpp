@@ -6,7 +6,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/io/words.h"
-#include "core/mesh/boundary.h"
+#include "core/mesh/interfaces.h"
 
 namespace lamella {
 namespace {
@@ -224,7 +224,7 @@ SimplexMesh<D> assemble(const Content& content, Section<D + 1> elements, Section
   mesh.facets = std::move(facets.nodes);
   mesh.facet_face = std::move(facets.refs);
   mesh.facet_group.assign(mesh.facets.size(), 0);
-  rebuild_facets(mesh);  // what the file does not list gets face, that is reference, 0
+  rebuild_with_interfaces(mesh);  // what is not listed gets face, that is reference, 0
   if (listed) mesh.facet_group = name_refs(mesh.facet_face, mesh.groups);
   if (mesh.groups.empty()) mesh.groups = {"walls"};
   return mesh;

@@ -21,11 +21,10 @@ using AnyMesh = std::variant<SimplexMesh<2>, SimplexMesh<3>, SimplexMesh<4>>;
 /// Nodes keep their numbers, used or not, so that a .sol file fits. The reference of an element
 /// names its body and that of a boundary face its group: reference r reads as the name "ref r", and
 /// facet_face is r. Boundary faces that the file does not list are added with reference 0 (all in
-/// the group "walls" when it lists none); listed faces that are no boundary are dropped. The facets
-/// are turned outward; elements are left as they are, for `inspect` to judge. Unknown sections are
-/// skipped.
-/// Errors: io, bad_input (empty, binary, not Medit, truncated, index out of range, no elements),
-/// with the line; cancelled.
+/// the group "walls" when it lists none); listed faces that are neither a boundary nor between two
+/// bodies are dropped. The facets are turned outward; elements are left as they are, for `inspect`
+/// to judge. Unknown sections are skipped. Errors: io, bad_input (empty, binary, not Medit,
+/// truncated, index out of range, no elements), with the line; cancelled.
 Result<AnyMesh> read_medit(const std::filesystem::path& file, const Progress& progress = {});
 /// The same for a caller that knows the dimension. Error: bad_input when the file has the other.
 template <int D>

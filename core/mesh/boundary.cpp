@@ -1,6 +1,7 @@
 #include "core/mesh/boundary.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/mesh/adjacency.h"
 
@@ -53,6 +54,35 @@ void rebuild_facets(SimplexMesh<D>& mesh) {
     mesh.facet_group[i] = it->group;
     mesh.facet_face[i] = it->face;
   }
+}
+
+ReferenceSurface<3> surface_of_facets(const SimplexMesh<3>& mesh,
+                                      const std::vector<std::size_t>& facets) {
+  ReferenceSurface<3> surface;
+  std::vector<std::int32_t> vertex(mesh.points.size(), -1);
+  std::int32_t faces = 0;
+  for (const std::size_t f : facets) {
+    std::array<std::int32_t, 3> facet{};
+    for (int k = 0; k < 3; ++k) {
+      std::int32_t& v = vertex[mesh.facets[f][k]];
+      if (v < 0) {
+        v = static_cast<std::int32_t>(surface.points.size());
+        surface.points.push_back(mesh.points[mesh.facets[f][k]]);
+      }
+      facet[k] = v;
+    }
+    surface.facets.push_back(facet);
+    surface.facet_face.push_back(std::max(0, mesh.facet_face[f]));
+    faces = std::max(faces, surface.facet_face.back() + 1);
+  }
+  surface.faces.resize(static_cast<std::size_t>(faces));
+  return surface;
+}
+
+ReferenceSurface<3> surface_of_facets(const SimplexMesh<3>& mesh) {
+  std::vector<std::size_t> all(mesh.facets.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return surface_of_facets(mesh, all);
 }
 
 template <int D>

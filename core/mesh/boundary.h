@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/surface.h"
 #include "core/mesh/simplex_mesh.h"
 
 namespace lamella {
@@ -21,6 +22,13 @@ std::vector<BoundaryFace<D>> boundary_faces(
 /// Facets that were listed but are no boundary disappear.
 template <int D>
 void rebuild_facets(SimplexMesh<D>& mesh);
+
+/// The facets of the given numbers as a surface without features, with their CAD faces; negative
+/// faces become 0.
+ReferenceSurface<3> surface_of_facets(const SimplexMesh<3>& mesh,
+                                      const std::vector<std::size_t>& facets);
+/// The same of all facets.
+ReferenceSurface<3> surface_of_facets(const SimplexMesh<3>& mesh);
 
 /// Removes the nodes that no element uses; the others keep their order. Returns the new id of each
 /// old node, -1 where it was removed; entry 0 (the virtual node) stays 0.

@@ -70,6 +70,17 @@ WithInterfaces<D> list_interfaces(const SimplexMesh<D>& mesh) {
 }
 
 template <int D>
+void rebuild_with_interfaces(SimplexMesh<D>& mesh) {
+  const auto [listed, outer, given] = list_interfaces(mesh);
+  rebuild_facets(mesh);
+  for (std::size_t f = outer; f < given; ++f) {
+    mesh.facets.push_back(listed.facets[f]);
+    mesh.facet_group.push_back(listed.facet_group[f]);
+    mesh.facet_face.push_back(listed.facet_face[f]);
+  }
+}
+
+template <int D>
 SimplexMesh<D> drop_body(const SimplexMesh<D>& mesh, std::int32_t body,
                          std::vector<NodeId>* new_id) {
   SimplexMesh<D> rest = mesh;
@@ -82,14 +93,7 @@ SimplexMesh<D> drop_body(const SimplexMesh<D>& mesh, std::int32_t body,
     rest.elements.push_back(mesh.elements[e]);
     rest.element_body.push_back(b > body ? b - 1 : b);
   }
-  // Those that are listed between two bodies yet are no boundary: rebuilding would drop them.
-  const auto [listed, outer, given] = list_interfaces(rest);
-  rebuild_facets(rest);
-  for (std::size_t f = outer; f < given; ++f) {
-    rest.facets.push_back(listed.facets[f]);
-    rest.facet_group.push_back(listed.facet_group[f]);
-    rest.facet_face.push_back(listed.facet_face[f]);
-  }
+  rebuild_with_interfaces(rest);
   std::vector<NodeId> ids = compact_nodes(rest);
   if (new_id) *new_id = std::move(ids);
   return rest;
@@ -119,6 +123,7 @@ std::vector<typename SimplexMesh<D>::Facet> blocking_faces(const SimplexMesh<D>&
 
 #define LAMELLA_INSTANTIATE(D)                                                                     \
   template WithInterfaces<D> list_interfaces<D>(const SimplexMesh<D>&);                            \
+  template void rebuild_with_interfaces<D>(SimplexMesh<D>&);                                       \
   template SimplexMesh<D> drop_body<D>(const SimplexMesh<D>&, std::int32_t, std::vector<NodeId>*); \
   template std::vector<SimplexMesh<D>::Facet> blocking_faces<D>(const SimplexMesh<D>&);
 LAMELLA_INSTANTIATE(2)

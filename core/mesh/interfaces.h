@@ -23,6 +23,10 @@ SimplexMesh<D> with_interfaces(const SimplexMesh<D>& mesh) {
   return list_interfaces(mesh).mesh;
 }
 
+/// rebuild_facets, but faces between two bodies that were listed stay so, behind the boundary.
+template <int D>
+void rebuild_with_interfaces(SimplexMesh<D>& mesh);
+
 /// The mesh without the elements of one body. What its faces towards other bodies were listed as,
 /// group and CAD face, they are as boundary; those not listed get group and face 0. `new_id` gets
 /// the node that each node of `mesh` became, -1 where it is gone (compact_field).

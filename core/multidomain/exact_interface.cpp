@@ -8,6 +8,7 @@
 #include "core/geometry/locator.h"
 #include "core/geometry/soup.h"
 #include "core/mesh/adjacency.h"
+#include "core/mesh/boundary.h"
 #include "core/multidomain/chord_metric.h"
 #include "core/multidomain/hold.h"
 #include "core/multidomain/interface_cut.h"
@@ -44,30 +45,6 @@ void append(ReferenceSurface<3>& all, const ReferenceSurface<3>& s, std::int32_t
     all.faces[face + f] = s.faces[f];
 }
 
-/// Facets of a mesh that `on` tells, as a surface.
-template <class On>
-ReferenceSurface<3> surface_of(const SimplexMesh<3>& mesh, std::size_t first, std::size_t last,
-                               const On& on) {
-  ReferenceSurface<3> s;
-  std::vector<std::int32_t> where(mesh.points.size(), -1);
-  for (std::size_t f = first; f < last; ++f) {
-    if (!on(f)) continue;
-    std::array<std::int32_t, 3> facet;
-    for (int k = 0; k < 3; ++k) {
-      std::int32_t& v = where[mesh.facets[f][k]];
-      if (v < 0) {
-        v = static_cast<std::int32_t>(s.points.size());
-        s.points.push_back(mesh.points[mesh.facets[f][k]]);
-      }
-      facet[k] = v;
-    }
-    s.facets.push_back(facet);
-    s.facet_face.push_back(mesh.facet_face[f]);
-  }
-  s.faces.resize(static_cast<std::size_t>(face_count(s.facet_face)));
-  return s;
-}
-
 using Edge = std::array<std::int32_t, 2>;
 
 /// The facets around each edge.
@@ -85,7 +62,7 @@ std::map<Edge, std::vector<std::size_t>> edges_of(
 /// The boundary of the mesh with its edges: between faces, groups, and where facets meet at an
 /// angle.
 ReferenceSurface<3> wall_of(const SimplexMesh<3>& mesh, double feature_angle) {
-  ReferenceSurface<3> s = surface_of(mesh, 0, mesh.facets.size(), [](std::size_t) { return true; });
+  ReferenceSurface<3> s = surface_of_facets(mesh);
   const auto normal = [&](std::size_t f) {
     return facet_normal<3>(mesh.corners(mesh.facets[f])).normalized().eval();
   };
@@ -112,16 +89,21 @@ class Finish {
         tolerance_(tolerance),
         feature_angle_(feature_angle) {}
 
-  ReferenceSurface<3> run() {
+  /// `wall`: the boundary of the domain, null where the mesh knows it best. `first_face` gets the
+  /// number of the first face of each region.
+  ReferenceSurface<3> run(const ReferenceSurface<3>* wall, std::vector<std::int32_t>& first_face) {
     find_sides();
-    ReferenceSurface<3> all = wall_of(original_, feature_angle_);
-    std::int32_t base = face_count(original_.facet_face);
+    ReferenceSurface<3> all = wall ? *wall : wall_of(original_, feature_angle_);
+    std::int32_t base = std::max(face_count(original_.facet_face), face_count(all.facet_face));
     for (int z = 0; z < partition_.background(); ++z) {
+      first_face.push_back(base);
       const ReferenceSurface<3>* s = &surfaces_[z];
       ReferenceSurface<3> own;
       if (s->facets.empty()) {
-        own = surface_of(cut_.mesh, cut_.outer, cut_.mesh.facets.size(),
-                         [&](std::size_t f) { return sides_[f - cut_.outer][0] == z; });
+        std::vector<std::size_t> cut_out;
+        for (std::size_t i = 0; i < sides_.size(); ++i)
+          if (sides_[i][0] == z) cut_out.push_back(cut_.outer + i);
+        own = surface_of_facets(cut_.mesh, cut_out);
         s = &own;
       }
       if (s->facets.empty()) continue;
@@ -291,7 +273,7 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   std::optional<Adapted<3>> refined;
   if (std::count(finer.begin(), finer.end(), 1) > 0) {
     Result<Adapted<3>> r =
-        adapt<3>(mesh, chords, nullptr, adapt_params, progress.portion(0.05, 0.4), chords_at);
+        adapt<3>(mesh, chords, params.wall, adapt_params, progress.portion(0.05, 0.4), chords_at);
     if (!r) return r.error();
     if (r->report.cancelled) return cancelled_error();
     refined = std::move(*r);
@@ -307,7 +289,7 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   out.lost = cut->lost;
   out.surface =
       Finish(fuzzy, partition, surfaces, *cut, cut_params.tolerance, adapt_params.feature_angle)
-          .run();
+          .run(params.wall, out.first_face);
   Result<Adapted<3>> adapted = adapt<3>(cut->mesh, cut->metric, &out.surface, adapt_params,
                                         progress.portion(0.5, 1), chords_at);
   if (!adapted) return adapted.error();

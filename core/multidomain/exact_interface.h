@@ -6,9 +6,12 @@
 namespace lamella {
 
 struct ExactParams {
-  AdaptParams
-      adapt;  ///< of the mesh that was cut; its chord tolerance holds for the interfaces too
+  /// Of the mesh that was cut; its chord tolerance holds for the interfaces too.
+  AdaptParams adapt;
   double snap = 0.4;  ///< of the size across: nodes nearer to a border are moved onto it
+  /// The boundary of the domain, with the CAD faces of the mesh; null: that of the mesh is plane
+  /// enough to be its own reference.
+  const ReferenceSurface<3>* wall = nullptr;
 };
 
 /// A mesh every element of which belongs to one region.
@@ -21,9 +24,10 @@ struct Exact {
   /// the lines where interfaces meet each other and the boundary: what holds the mesh when it is
   /// adapted again, the background dropped or not.
   ReferenceSurface<3> surface;
-  std::size_t snapped = 0;  ///< nodes moved onto borders
-  std::size_t added = 0;    ///< nodes added on borders
-  std::size_t lost = 0;     ///< pieces of feature edges that could not be followed
+  std::vector<std::int32_t> first_face;  ///< [region] in `surface`, the background left out
+  std::size_t snapped = 0;               ///< nodes moved onto borders
+  std::size_t added = 0;                 ///< nodes added on borders
+  std::size_t lost = 0;                  ///< pieces of feature edges that could not be followed
   AdaptReport adapt;
 };
 

@@ -145,17 +145,22 @@ struct Place {
 
 bool below(const Place& place, int asked) { return place.layers < asked - 1e-6; }
 
+Place on_facet(const Mesh& mesh, std::size_t facet) {
+  const auto corners = mesh.corners(mesh.facets[facet]);
+  Place place;
+  place.at = (corners[0] + corners[1] + corners[2]) / 3;
+  place.corners = mesh.facets[facet];
+  place.area = 0.5 * facet_normal<3>(corners).norm();
+  return place;
+}
+
 Place measure(const Mesh& mesh, const Neighbors& neighbors, const Locator<3>& surface,
               std::int32_t facet) {
-  Place place;
-  const auto corners = mesh.corners(mesh.facets[facet]);
-  const Vec<3> n = facet_normal<3>(corners);
-  place.area = 0.5 * n.norm();
+  Place place = on_facet(mesh, static_cast<std::size_t>(facet));
   if (neighbors.owner[facet].element < 0 || !(place.area > 0)) return place;
-  const Vec<3> center = (corners[0] + corners[1] + corners[2]) / 3;
-  place.at = center;
-  place.corners = mesh.facets[facet];
-  const Vec<3> u = -n.normalized();
+  const auto corners = mesh.corners(mesh.facets[facet]);
+  const Vec<3>& center = place.at;
+  const Vec<3> u = -facet_normal<3>(corners).normalized();
 
   // Structured meshes have edges exactly below a center: step aside when the line is caught there.
   const auto [element, entered] = neighbors.owner[facet];
@@ -360,15 +365,12 @@ Result<Layers> measure_boundary_layer(const SimplexMesh<3>& mesh,
   std::vector<Place> places(mesh.facets.size());
   const auto measure_at = [&](std::size_t f) {
     if (!faces.empty() && std::count(faces.begin(), faces.end(), mesh.facet_face[f]) == 0) return;
-    const auto corners = mesh.corners(mesh.facets[f]);
-    const Vec<3> n = facet_normal<3>(corners);
     Place& place = places[f];
-    place.at = (corners[0] + corners[1] + corners[2]) / 3;
-    place.corners = mesh.facets[f];
-    place.area = 0.5 * n.norm();
+    place = on_facet(mesh, f);
     const auto [element, entered] = neighbors.owner[f];
     if (element < 0 || !(place.area > 0)) return;
-    Walk w = walk(mesh, neighbors, element, entered, place.at, -n.normalized(), thickness);
+    const Vec<3> u = -facet_normal<3>(mesh.corners(mesh.facets[f])).normalized();
+    Walk w = walk(mesh, neighbors, element, entered, place.at, u, thickness);
     place.opposite = w.whole;
     place.layers = w.layers;
     place.crossed = std::move(w.crossed);

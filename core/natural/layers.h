@@ -39,9 +39,9 @@ struct Layers {
 Result<Layers> measure_layers(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
                               int asked, int threads = 0, const Progress& progress = {});
 
-/// The same through a boundary layer (7.3.2): from the facets of the given CAD faces (all when there
-/// are none) for `thickness` mm along the inward normal, whatever lies beyond. Where the body ends
-/// before, nothing is measured.
+/// The same through a boundary layer (7.3.2): from the facets of the given CAD faces (all when
+/// there are none) for `thickness` mm along the inward normal, whatever lies beyond. Where the body
+/// ends before, nothing is measured.
 Result<Layers> measure_boundary_layer(const SimplexMesh<3>& mesh,
                                       const std::vector<std::int32_t>& faces, double thickness,
                                       int asked, int threads = 0, const Progress& progress = {});

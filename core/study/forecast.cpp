@@ -61,6 +61,9 @@ Result<std::vector<BodyForecast>> forecast_study(
     const Study& study, const std::vector<Part>& parts,
     const std::vector<std::shared_ptr<const VolumeMesher>>& meshers, const Progress& progress) {
   if (Result<void> good = check_request(study, parts); !good) return good.error();
+  if (study.domain)
+    return Error{Code::usage, "One mesh of all bodies cannot be forecast.",
+                 "Run one iteration, or leave the domain out: a mesh a body can be."};
   Result<std::vector<FirstMesh>> first = first_meshes(parts, meshers, progress.portion(0, 0.7));
   if (!first) return first.error();
   return forecast_from(*first, study, parts, progress.portion(0.7, 1));

@@ -6,12 +6,6 @@ namespace lamella {
 
 namespace {
 
-std::int32_t group_called(const std::string& name, std::vector<std::string>& groups) {
-  auto it = std::find(groups.begin(), groups.end(), name);
-  if (it == groups.end()) it = groups.insert(it, name);
-  return static_cast<std::int32_t>(it - groups.begin());
-}
-
 /// The facets from number `first` on, whose faces are those of a grouped surface, get their groups
 /// and the faces of the part.
 void put_in_groups(const FaceGroups& of, const std::string& walls, std::size_t first,
@@ -26,6 +20,12 @@ void put_in_groups(const FaceGroups& of, const std::string& walls, std::size_t f
 }
 
 }  // namespace
+
+std::int32_t group_called(const std::string& name, std::vector<std::string>& groups) {
+  auto it = std::find(groups.begin(), groups.end(), name);
+  if (it == groups.end()) it = groups.insert(it, name);
+  return static_cast<std::int32_t>(it - groups.begin());
+}
 
 std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodies,
                                       const std::vector<std::string>& names,
@@ -71,14 +71,34 @@ std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodie
   return joined;
 }
 
+LayerStats join(const std::vector<const LayerStats*>& layers) {
+  LayerStats all;
+  bool first = true;
+  for (const LayerStats* of : layers) {
+    if (of->places == 0) continue;
+    const auto p = static_cast<double>(of->places);
+    all.places += of->places;
+    all.mean += p * of->mean;
+    all.share_reached += p * of->share_reached;
+    all.p5 = first ? of->p5 : std::min(all.p5, of->p5);
+    all.p50 = first ? of->p50 : std::min(all.p50, of->p50);
+    all.p95 = std::max(all.p95, of->p95);
+    first = false;
+  }
+  if (all.places == 0) return all;
+  all.mean /= static_cast<double>(all.places);
+  all.share_reached /= static_cast<double>(all.places);
+  return all;
+}
+
 IterationRecord join(const std::vector<const IterationRecord*>& records) {
   if (records.size() == 1) return *records.front();
   IterationRecord all;
   all.quality_min = 1;
-  double elements = 0, places = 0;
-  bool first = true;
+  double elements = 0;
+  std::vector<const LayerStats*> layers;
   for (const IterationRecord* r : records) {
-    const auto e = static_cast<double>(r->elements), p = static_cast<double>(r->layers.places);
+    const auto e = static_cast<double>(r->elements);
     all.iteration = std::max(all.iteration, r->iteration);
     all.nodes += r->nodes;
     all.elements += r->elements;
@@ -92,21 +112,12 @@ IterationRecord join(const std::vector<const IterationRecord*>& records) {
     all.forecast_memory = std::max(all.forecast_memory, r->forecast_memory);
     all.layers_by_nodes += static_cast<double>(r->nodes) * r->layers_by_nodes;
     elements += e;
-    if (r->layers.places == 0) continue;
-    all.layers.places += r->layers.places;
-    all.layers.mean += p * r->layers.mean;
-    all.layers.share_reached += p * r->layers.share_reached;
-    all.layers.p5 = first ? r->layers.p5 : std::min(all.layers.p5, r->layers.p5);
-    all.layers.p50 = first ? r->layers.p50 : std::min(all.layers.p50, r->layers.p50);
-    all.layers.p95 = std::max(all.layers.p95, r->layers.p95);
-    places += p;
-    first = false;
+    layers.push_back(&r->layers);
   }
   if (all.nodes > 0) all.layers_by_nodes /= static_cast<double>(all.nodes);
   for (double* mean : {&all.quality_mean, &all.conformity, &all.unit_edges})
     *mean = elements > 0 ? *mean / elements : 0;
-  for (double* mean : {&all.layers.mean, &all.layers.share_reached})
-    *mean = places > 0 ? *mean / places : 0;
+  all.layers = join(layers);
   return all;
 }
 

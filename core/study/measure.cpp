@@ -68,26 +68,7 @@ SimplexMesh<3> extract_body(const SimplexMesh<3>& mesh, std::int32_t body,
 }
 
 ReferenceSurface<3> boundary_surface(const SimplexMesh<3>& mesh, std::int32_t body) {
-  const SimplexMesh<3> part = extract_body(mesh, body);
-  ReferenceSurface<3> surface;
-  std::vector<std::int32_t> vertex(part.points.size(), -1);
-  std::int32_t faces = 1;
-  for (std::size_t f = 0; f < part.facets.size(); ++f) {
-    std::array<std::int32_t, 3> facet{};
-    for (int k = 0; k < 3; ++k) {
-      std::int32_t& v = vertex[part.facets[f][k]];
-      if (v < 0) {
-        v = static_cast<std::int32_t>(surface.points.size());
-        surface.points.push_back(part.points[part.facets[f][k]]);
-      }
-      facet[k] = v;
-    }
-    surface.facets.push_back(facet);
-    surface.facet_face.push_back(std::max(0, part.facet_face[f]));
-    faces = std::max(faces, surface.facet_face.back() + 1);
-  }
-  surface.faces.resize(static_cast<std::size_t>(faces));
-  return surface;
+  return surface_of_facets(extract_body(mesh, body));
 }
 
 }  // namespace lamella

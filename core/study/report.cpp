@@ -38,6 +38,8 @@ Json iteration_json(const IterationRecord& r) {
           {"unit_edges", r.unit_edges},
           {"layers", layers_json(r.layers)},
           {"layers_by_nodes", r.layers_by_nodes},
+          {"mixed", r.mixed},
+          {"interface_error", r.interface_error},
           {"forecast_nodes", r.forecast_nodes},
           {"forecast_memory", r.forecast_memory},
           {"seconds", r.seconds}};
@@ -79,6 +81,8 @@ Json body_json(const BodyOutcome& body) {
           {"part_to_boundary", farthest_json(body.boundary_distance.from_surface)},
           {"chord_tolerance", body.chord_tolerance},
           {"h_min", body.h_min},
+          {"interface_size", body.interface_size},
+          {"interface_error", body.interface_error},
           {"layers", layers_json(body.layers)},
           {"below", below_json(body.below)},
           {"notes", body.notes},

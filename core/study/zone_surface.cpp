@@ -169,4 +169,13 @@ Result<ReferenceSurface<3>> zone_surface(const StudyZone& zone, const std::vecto
   return surface;
 }
 
+double zone_volume(const StudyZone& zone, const ReferenceSurface<3>& surface) {
+  constexpr double pi = std::numbers::pi;
+  if (const auto* b = std::get_if<ZoneBall>(&zone.shape))
+    return 4 * pi / 3 * b->radius * b->radius * b->radius;
+  if (const auto* c = std::get_if<ZoneCylinder>(&zone.shape))
+    return pi * c->radius * c->radius * (c->to - c->from).norm();
+  return enclosed_measure(surface);
+}
+
 }  // namespace lamella

@@ -12,4 +12,7 @@ namespace lamella {
 Result<ReferenceSurface<3>> zone_surface(const StudyZone& zone, const std::vector<StudyZone>& all,
                                          const StudyZone& domain, double tolerance);
 
+/// Volume of the zone, mm^3, by its formula; of one that ends with the domain that of `surface`.
+double zone_volume(const StudyZone& zone, const ReferenceSurface<3>& surface);
+
 }  // namespace lamella

@@ -1,7 +1,7 @@
 #include <QElapsedTimer>
 #include <algorithm>
 
-#include "core/geometry/soup.h"
+#include "core/study/zone_surface.h"
 #include "ui/session/session.h"
 #include "ui/session/zone_shapes.h"
 
@@ -48,14 +48,14 @@ void Session::take_zone_shapes() {
   shaper_.start([this, study = shaped_, parts = parts_,
                  round = shaped_round_](const Progress& progress) -> Worker::Done {
     ZoneShapes made = zone_shapes(*study, *parts, progress);
-    return [this, round, made = std::move(made)]() mutable {
+    return [this, round, study, made = std::move(made)]() mutable {
       if (round != shaped_round_) return;
       drawn_round_ = round;
       auto all = std::make_shared<std::vector<Part>>(*shapes_);
       for (std::size_t z = 0; z < made.zones.size(); ++z) {
         Part& shape = (*all)[parts_->size() + z];
         shape.surface = std::move(made.zones[z]);
-        shape.cad_volume = enclosed_measure(shape.surface);
+        shape.cad_volume = zone_volume(study->zones[z], shape.surface);
       }
       shapes_ = all;
       hull_ = std::move(made.hull);

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/multidomain/partition.h"
+#include "core/natural/layer_correction.h"
+#include "core/natural/medial_ball.h"
+#include "core/natural/natural_metric.h"
+#include "core/sizing/sizing_field.h"
+#include "core/study/run.h"
+
+namespace lamella {
+
+/// A body or what is around all of them: a region of the partition.
+struct Member {
+  Part part;  ///< its surface, the whole of it whatever lies over it
+  NaturalParams natural;
+  std::unique_ptr<const NaturalDetector> detector;
+  SizingField sizing;
+  LayerCorrection correction;
+  std::unique_ptr<const FaceGroups> groups;  ///< null: the study has none on it
+  double interface_size = 0;                 ///< mm, across its borders
+  /// A formula that ends with the domain only: the mesh finds its edges.
+  bool endless = false;
+};
+
+/// What one mesh of all bodies is made from, before the first iteration.
+struct Assembly {
+  std::vector<Member> members;  ///< [region], what is around the bodies last
+  std::unique_ptr<const Partition<3>> partition;
+  std::vector<std::int32_t> body_of;        ///< [region] body of an exact mesh, -1: dropped
+  std::optional<ReferenceSurface<3>> wall;  ///< of the domain; unset: that of the mesh, planes
+  SimplexMesh<3> first;                     ///< of the whole domain, one body
+  double chord_tolerance = 0;               ///< mm, of the mesh to the bodies' exact shape
+  double mesh_tolerance = 0;                ///< what the tessellations have left of it for the mesh
+  std::vector<BodyOutcome> outcomes;        ///< [region], with overlaps and gaps in the notes
+};
+
+/// Facets on the CAD faces from number `first_face` on, which are those of a grouped surface, get
+/// their groups.
+void put_in_groups(const FaceGroups& of, std::int32_t first_face, SimplexMesh<3>& mesh);
+
+/// Errors: usage (no body, a body to be dropped that is not there, what one mesh of all bodies
+/// cannot do); bad_input (a zone outside of the domain); those of the meshers; cancelled.
+Result<Assembly> lay_out(const Study& study, const std::vector<Part>& parts,
+                         const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
+                         const Progress& progress);
+
+}  // namespace lamella
