@@ -1,7 +1,13 @@
 #include "core/multidomain/chord_metric.h"
 
+#include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
+#include <optional>
+#include <utility>
 
+#include "core/base/parallel.h"
 #include "core/metric/intersect.h"
 
 namespace lamella {
@@ -13,8 +19,75 @@ constexpr double edge_share = 0.5;
 constexpr double parabola = 0.08;
 /// Cosine between normals a step apart below which there is an edge between.
 constexpr double sharp_turn = 0.85;
+/// Of the whole: what is flatter than this counts as flat.
+constexpr double flat_share = 0.3;
+
+using Curved = ChordField::Curved;
+
+/// How long chords of a border may be around a point of it; nothing where it has an edge.
+std::optional<Curved> chords_of(const Zone<3>& zone, const Vec<3>& foot, const Vec<3>& normal,
+                                double largest, double tolerance) {
+  Mat<3> axes;
+  axes.col(2) = normal;
+  axes.col(0) = normal.unitOrthogonal();
+  axes.col(1) = normal.cross(axes.col(0));
+  // The second fundamental form from how the border falls off on both sides in four directions.
+  constexpr int directions = 4;
+  double h = largest;
+  std::array<double, directions> fall{};  // kappa h^2 / 8
+  bool smooth = false;
+  for (int i = 0; i < 12 && !smooth; ++i) {
+    if (i > 0) h *= 0.6;
+    smooth = true;
+    double most = 0;
+    for (int k = 0; k < directions; ++k) {
+      const double angle = std::numbers::pi * k / directions;
+      const Vec<3> t = std::cos(angle) * axes.col(0) + std::sin(angle) * axes.col(1);
+      fall[k] = 0;
+      for (double side : {-0.5, 0.5}) {
+        const ZoneDistance<3> d = zone.at(foot + side * h * t);
+        fall[k] += 0.5 * d.distance;
+        most = std::max(most, std::abs(d.distance));
+        smooth = smooth && d.normal.dot(normal) >= sharp_turn;
+      }
+    }
+    smooth = smooth && most <= parabola * h;
+  }
+  if (!smooth) return std::nullopt;  // on an edge
+  // Least squares of a cos^2 + 2 b cos sin + c sin^2 over the directions.
+  const double mean = (fall[0] + fall[1] + fall[2] + fall[3]) / 4;
+  const double half = (fall[0] - fall[2]) / 2, cross = (fall[1] - fall[3]) / 2;
+  Mat<2> form;
+  form << mean + half, cross, cross, mean - half;
+  const Spectrum<2> principal = spectrum<2>(form);
+  Curved out;
+  out.normal = normal;
+  for (int k = 0; k < 2; ++k) {
+    const double most = std::abs(principal.values[k]);
+    out.direction[k] = axes.leftCols<2>() * principal.vectors.col(k);
+    out.size[k] = most > 0 ? h * std::sqrt(edge_share * tolerance / most)
+                           : std::numeric_limits<double>::infinity();
+  }
+  if (out.size[1] < out.size[0]) {
+    std::swap(out.size[0], out.size[1]);
+    std::swap(out.direction[0], out.direction[1]);
+  }
+  return out;
+}
 
 }  // namespace
+
+Metric<3> Curved::at(const Metric<3>& metric, double distance, double growth) const {
+  const double none = 1e3 / std::sqrt(spectrum<3>(metric).values[0]);
+  Metric<3> chords = eigenvalue_from_size(none) * normal * normal.transpose();
+  bool asks = false;
+  for (int k = 0; k < 2; ++k) {
+    const double along = std::min(none, size[k] + growth * distance);
+    asks = asks || metric_length<3>(direction[k], metric) * along < 1;
+    chords += eigenvalue_from_size(along) * direction[k] * direction[k].transpose();
+  }
+  return asks ? intersect<3>(metric, chords) : metric;
+}
 
 Metric<3> with_chords(const Metric<3>& metric, const Partition<3>& partition, const Vec<3>& x,
                       double tolerance, double growth) {
@@ -34,53 +107,57 @@ Metric<3> with_chords(const Metric<3>& metric, const Partition<3>& partition, co
     if (d.distance < 0) break;  // the others are hidden
   }
   if (!zone || !(near.normal.squaredNorm() > 0)) return metric;
-  const Vec<3> foot = x - near.distance * near.normal;
-  Mat<3> axes;
-  axes.col(2) = near.normal;
-  axes.col(0) = near.normal.unitOrthogonal();
-  axes.col(1) = near.normal.cross(axes.col(0));
+  const std::optional<Curved> curved =
+      chords_of(*zone, x - near.distance * near.normal, near.normal, largest, tolerance);
+  return curved ? curved->at(metric, std::abs(near.distance), growth) : metric;
+}
 
-  // The second fundamental form from how the border falls off on both sides in four directions.
-  constexpr int directions = 4;
-  double h = largest;
-  std::array<double, directions> fall{};  // kappa h^2 / 8
-  bool smooth = false;
-  for (int i = 0; i < 12 && !smooth; ++i) {
-    if (i > 0) h *= 0.6;
-    smooth = true;
-    double most = 0;
-    for (int k = 0; k < directions; ++k) {
-      const double angle = std::numbers::pi * k / directions;
-      const Vec<3> t = std::cos(angle) * axes.col(0) + std::sin(angle) * axes.col(1);
-      fall[k] = 0;
-      for (double side : {-0.5, 0.5}) {
-        const ZoneDistance<3> d = zone->at(foot + side * h * t);
-        fall[k] += 0.5 * d.distance;
-        most = std::max(most, std::abs(d.distance));
-        smooth = smooth && d.normal.dot(near.normal) >= sharp_turn;
-      }
+ChordField::ChordField(const Partition<3>& partition,
+                       const std::vector<ReferenceSurface<3>>& surfaces, double tolerance,
+                       double growth, int threads)
+    : growth_(growth) {
+  Box<3> all;
+  for (const auto& s : surfaces)
+    for (const Vec<3>& p : s.points) all.add(p);
+  const double largest = (all.hi - all.lo).norm();
+  std::map<int, Level> levels;  // by the power of two of the smallest size
+  for (std::size_t z = 0; z < surfaces.size(); ++z) {
+    const ReferenceSurface<3>& s = surfaces[z];
+    std::vector<std::optional<Curved>> found(s.facets.size());
+    parallel_each(found.size(), threads, {}, [&](std::size_t f) {
+      const Vec<3>&a = s.points[s.facets[f][0]], &b = s.points[s.facets[f][1]],
+            &c = s.points[s.facets[f][2]];
+      const Vec<3> center = (a + b + c) / 3, normal = (b - a).cross(c - a);
+      if (!(normal.squaredNorm() > 0) || partition.border(center).distance > 0.1 * tolerance)
+        return;  // hidden
+      found[f] = chords_of(partition.zone(static_cast<int>(z)), center, normal.normalized(),
+                           flat_share * largest, tolerance);
+    });
+    for (std::size_t f = 0; f < found.size(); ++f) {
+      if (!found[f] || !(found[f]->size[0] < flat_share * largest)) continue;
+      Level& level = levels[std::ilogb(found[f]->size[0])];
+      const auto first = static_cast<std::int32_t>(level.surface.points.size());
+      for (auto v : s.facets[f]) level.surface.points.push_back(s.points[v]);
+      level.surface.facets.push_back({first, first + 1, first + 2});
+      level.surface.facet_face.push_back(0);
+      level.curved.push_back(*found[f]);
     }
-    smooth = smooth && most <= parabola * h;
   }
-  if (!smooth) return metric;  // on an edge
-  // Least squares of a cos^2 + 2 b cos sin + c sin^2 over the directions.
-  const double mean = (fall[0] + fall[1] + fall[2] + fall[3]) / 4;
-  const double half = (fall[0] - fall[2]) / 2, cross = (fall[1] - fall[3]) / 2;
-  Mat<2> form;
-  form << mean + half, cross, cross, mean - half;
-  const Spectrum<2> principal = spectrum<2>(form);
-  const double none = 1e3 * largest;
-  Metric<3> chords = eigenvalue_from_size(none) * near.normal * near.normal.transpose();
-  bool asks = false;
-  for (int k = 0; k < 2; ++k) {
-    const Vec<3> t = axes.leftCols<2>() * principal.vectors.col(k);
-    const double most = std::abs(principal.values[k]);
-    const double along = most > 0 ? h * std::sqrt(edge_share * tolerance / most) : none;
-    const double size = std::min(none, along + growth * std::abs(near.distance));
-    asks = asks || metric_length<3>(t, metric) * size < 1;
-    chords += eigenvalue_from_size(size) * t * t.transpose();
+  for (auto& [power, level] : levels) {
+    level.surface.faces.resize(1);
+    level.locator = std::make_unique<const Locator<3>>(level.surface);
+    level.surface = {};
+    levels_.push_back(std::move(level));
   }
-  return asks ? intersect<3>(metric, chords) : metric;
+}
+
+Metric<3> ChordField::at(const Metric<3>& metric, const Vec<3>& x) const {
+  Metric<3> out = metric;
+  const double largest = 1 / std::sqrt(spectrum<3>(metric).values[0]);
+  for (const Level& level : levels_)
+    if (const auto on = level.locator->nearest(x, largest / growth_))
+      out = level.curved[on->facet].at(out, std::sqrt(on->distance2), growth_);
+  return out;
 }
 
 }  // namespace lamella

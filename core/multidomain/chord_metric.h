@@ -1,5 +1,10 @@
 #pragma once
 
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/geometry/locator.h"
 #include "core/metric/metric.h"
 #include "core/multidomain/partition.h"
 
@@ -10,5 +15,32 @@ namespace lamella {
 /// Sharp edges of the border do not count. Thread-safe.
 Metric<3> with_chords(const Metric<3>& metric, const Partition<3>& partition, const Vec<3>& x,
                       double tolerance, double growth = 0.5);
+
+/// The same for all that is curved in the surfaces of the zones, wherever the nearest border is: a
+/// fillet makes sizes small around it too. Immutable and thread-safe.
+class ChordField {
+ public:
+  ChordField(const Partition<3>& partition, const std::vector<ReferenceSurface<3>>& surfaces,
+             double tolerance, double growth = 0.5, int threads = 0);
+  Metric<3> at(const Metric<3>& metric, const Vec<3>& x) const;
+
+  /// Sizes along a border at a point of it, the smaller first.
+  struct Curved {
+    Vec<3> normal;
+    std::array<Vec<3>, 2> direction;
+    std::array<double, 2> size;
+    Metric<3> at(const Metric<3>& metric, double distance, double growth) const;
+  };
+
+ private:
+  /// Facets whose sizes are alike.
+  struct Level {
+    ReferenceSurface<3> surface;
+    std::vector<Curved> curved;  ///< [facet]
+    std::unique_ptr<const Locator<3>> locator;
+  };
+  std::vector<Level> levels_;
+  double growth_;
+};
 
 }  // namespace lamella

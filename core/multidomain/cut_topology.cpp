@@ -14,6 +14,8 @@ constexpr double close = 0.12;
 constexpr double least_part = 0.2;
 /// Of the tolerance: nodes this near to a border lie on it.
 constexpr double on_share = 0.02;
+/// Of the tolerance: features this near to each other are one.
+constexpr double merge_share = 0.2;
 
 }  // namespace
 
@@ -22,6 +24,7 @@ CutTopology::CutTopology(const SimplexMesh<3>& mesh, const MetricField<3>& field
                          const MetricFunction<3>& metric_at)
     : first_interface(static_cast<std::int32_t>(mesh.facets.size())),
       on(on_share * params.tolerance),
+      merge(merge_share * params.tolerance),
       partition_(partition),
       metric_at_(metric_at),
       snap_(params.snap) {
@@ -45,6 +48,21 @@ CutTopology::Weights CutTopology::weights_in(std::int32_t e, const Vec<3>& x) co
   const Corners<3> p = corners(topo.elements[e]);
   const Vec<3> w = edge_matrix<3>(p).inverse() * (x - p[0]);
   return {1 - w.sum(), w[0], w[1], w[2]};
+}
+
+std::vector<std::array<NodeId, 2>> CutTopology::edges_from(std::size_t first) const {
+  std::vector<std::array<NodeId, 2>> edges;
+  for (std::int32_t e = 0; e < count(); ++e) {
+    if (!active(e)) continue;
+    const Element& nodes = topo.elements[e];
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j)
+        if (static_cast<std::size_t>(std::max(nodes[i], nodes[j])) >= first)
+          edges.push_back(key(nodes[i], nodes[j]));
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
 }
 
 Hold CutTopology::hold(std::span<const NodeId> nodes) const {
@@ -149,7 +167,11 @@ Vec<3> CutTopology::nearest_in(const Element& nodes, unsigned bits, const Weight
   return x / sum;
 }
 
-NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec<3>& x) {
+NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec<3>& x, NodeId from,
+                               const Vec<3>& goal) {
+  const auto onwards = [&](const Vec<3>& y) {
+    return from == 0 || (goal - y).norm() < (goal - at(from)).norm();
+  };
   const Element nodes = topo.elements[e];
   Packed<3> m = Packed<3>::zero();
   for (NodeId n : nodes) m.add(0.25, metric[n]);
@@ -160,7 +182,7 @@ NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec
   for (int k : order) {
     const NodeId n = nodes[k];
     const double d = (at(n) - x).norm();
-    if (d <= exact || (locked[n] && d <= 0.1 * on)) {
+    if (d <= exact || (locked[n] && d <= merge && n != from && onwards(at(n)))) {
       if (!locked[n] && hold_allows(std::array{n}, x)) topo.points[n] = x;
       return lock(n);
     }
@@ -197,9 +219,17 @@ NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec
       if (size < 4) {
         const double off = (x - nearest_in(nodes, c.bits, weights)).norm();
         const bool there = off <= exact;
+        if (!there && size == 2 && features.contains(key(of[0], of[1]))) {
+          // What runs along another feature joins it.
+          const Vec<3> along = at(of[1]) - at(of[0]);
+          const double t = (x - at(of[0])).dot(along) / along.squaredNorm();
+          const Vec<3> y = at(of[0]) + t * along;
+          if (!(t > 0.01 && t < 0.99) || (y - x).norm() > merge || !onwards(y)) continue;
+          if (const NodeId n = split_at(of, y, std::array{1 - t, t})) return lock(n);
+          continue;
+        }
         if (!there && c.far2 > close * close) continue;
         if (!there && !hold_allows(of, x)) continue;
-        if (!there && size == 2 && features.contains(key(of[0], of[1]))) continue;
       }
       if (const NodeId n = split_at(of, x, share)) return lock(n);
     }

@@ -29,6 +29,7 @@ class CutTopology {
   std::int32_t first_interface;  ///< label of the interface of zone 0; below: facets
   double on;                     ///< mm: what is this near to a border lies on it
   double exact;                  ///< mm: points this near are one
+  double merge;                  ///< mm: features nearer to each other than this become one
   std::size_t moves = 0;
 
   std::int32_t count() const { return static_cast<std::int32_t>(topo.elements.size()); }
@@ -42,6 +43,8 @@ class CutTopology {
   Weights weights_in(std::int32_t e, const Vec<3>& x) const;
   static std::array<NodeId, 2> key(NodeId a, NodeId b) { return {std::min(a, b), std::max(a, b)}; }
 
+  /// The edges of the background that have a node from number `first` on, sorted.
+  std::vector<std::array<NodeId, 2>> edges_from(std::size_t first) const;
   /// What holds all of the nodes: the virtual elements that contain them.
   Hold hold(std::span<const NodeId> nodes) const;
   /// Moves a node, unless that makes elements poor; whether it did.
@@ -50,8 +53,11 @@ class CutTopology {
   /// all elements that contain them. 0 when an element would be turned or flat.
   NodeId split_at(std::span<const NodeId> of, const Vec<3>& x, std::span<const double> weights);
   /// Brings a node to x, which lies in the element: one that is there, a near one that may move, or
-  /// a new one, and locks it. `weights` that are zero are so on purpose. 0 when it cannot be done.
-  NodeId bring_node(std::int32_t e, const Weights& weights, const Vec<3>& x);
+  /// a new one, and locks it. `weights` that are zero are so on purpose. It may be what is locked
+  /// already nearby, on the way from a node to `goal` if that is nearer to the goal. 0 when it
+  /// cannot be done.
+  NodeId bring_node(std::int32_t e, const Weights& weights, const Vec<3>& x, NodeId from = 0,
+                    const Vec<3>& goal = Vec<3>::Zero());
 
  private:
   bool hold_allows(std::span<const NodeId> nodes, const Vec<3>& x) const {

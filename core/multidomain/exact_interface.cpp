@@ -22,6 +22,8 @@ constexpr double curve_share = 0.1;
 constexpr double face_turn = 0.4;
 /// Growth of the metric's determinant that calls for a finer mesh before it is cut.
 constexpr double finer_share = 1.5;
+/// Of the distance from what is curved: how sizes along it grow.
+constexpr double chord_growth = 0.7;
 
 std::int32_t face_count(const std::vector<std::int32_t>& facet_face) {
   std::int32_t faces = 0;
@@ -256,29 +258,37 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   cut_params.snap = params.snap;
   cut_params.threads = adapt_params.threads;
   const double tolerance = cut_params.tolerance;
+  const ChordField field(partition, surfaces, tolerance, chord_growth, adapt_params.threads);
+  const auto add_chords = [&](const Metric<3>& m, const Vec<3>& x) {
+    return field.at(with_chords(m, partition, x, tolerance), x);
+  };
   MetricFunction<3> chords_at;
-  if (metric_at)
-    chords_at = [&](const Vec<3>& x) { return with_chords(metric_at(x), partition, x, tolerance); };
+  if (metric_at) chords_at = [&](const Vec<3>& x) { return add_chords(metric_at(x), x); };
   MetricField<3> chords(mesh.points.size(), Metric<3>::Identity());
   std::vector<char> finer(mesh.points.size(), 0);
   if (!parallel_each(mesh.node_count(), adapt_params.threads, progress.portion(0, 0.05),
                      [&](std::size_t i) {
                        const Vec<3>& x = mesh.points[i + 1];
                        const Metric<3> m = metric_at ? metric_at(x) : metric[i + 1];
-                       chords[i + 1] = with_chords(m, partition, x, tolerance);
+                       chords[i + 1] = add_chords(m, x);
                        finer[i + 1] = chords[i + 1].determinant() > finer_share * m.determinant();
                      }))
     return cancelled_error();
+  // Bodies that elements are counted to so far have borders in steps, which must not be held.
+  SimplexMesh<3> whole = mesh;
+  whole.bodies = {partition.names().back()};
+  std::fill(whole.element_body.begin(), whole.element_body.end(), 0);
+  const bool stepped = whole.element_body != mesh.element_body;
   // Chords that are too long are made short before there is an interface to be held.
   std::optional<Adapted<3>> refined;
-  if (std::count(finer.begin(), finer.end(), 1) > 0) {
+  if (stepped || std::count(finer.begin(), finer.end(), 1) > 0) {
     Result<Adapted<3>> r =
-        adapt<3>(mesh, chords, params.wall, adapt_params, progress.portion(0.05, 0.4), chords_at);
+        adapt<3>(whole, chords, params.wall, adapt_params, progress.portion(0.05, 0.4), chords_at);
     if (!r) return r.error();
     if (r->report.cancelled) return cancelled_error();
     refined = std::move(*r);
   }
-  const SimplexMesh<3>& fuzzy = refined ? refined->mesh : mesh;
+  const SimplexMesh<3>& fuzzy = refined ? refined->mesh : whole;
   const MetricField<3>& fuzzy_metric = refined ? refined->metric : chords;
   Result<CutMesh> cut = cut_interfaces(fuzzy, fuzzy_metric, partition, surfaces, cut_params,
                                        progress.portion(0.4, 0.5), chords_at);

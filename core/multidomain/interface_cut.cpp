@@ -9,8 +9,11 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/element_locator.h"
+#include "core/multidomain/border_fit.h"
+#include "core/multidomain/border_sides.h"
 #include "core/multidomain/cut_topology.h"
 #include "core/multidomain/feature_chains.h"
+#include "core/multidomain/pierced.h"
 
 namespace lamella {
 namespace {
@@ -19,17 +22,27 @@ namespace {
 /// chord of a curved border does.
 constexpr double dip_share = 0.03;
 constexpr double smooth_dip_share = 0.3;
+/// Of the tolerance: nodes of feature edges this near to a border count as on it. Edges at them may
+/// dip as far.
+constexpr double feature_share = 0.25;
 /// Cosine between normals of a border above which it is smooth.
 constexpr double smooth_turn = 0.8;
 /// Of the tolerance: what the straight pieces of a feature line may take.
 constexpr double chain_share = 0.2;
 /// Rounds of looking for edges that cross a border.
 constexpr int split_rounds = 12;
-/// Of the tolerance: how far the middle of an interface's edge may lie from the border; facets add
-/// to it.
-constexpr double bend_share = 0.6;
-/// Rounds of halving edges that are too far.
-constexpr int bend_rounds = 4;
+/// Rounds of looking for elements that a border passes through, and of the tolerance: how deep.
+constexpr int pierced_rounds = 12;
+constexpr double pierced_share = 0.8;
+/// The least barycentric weight of a node there.
+constexpr double least_weight = 0.08;
+/// Metric distance from a node within which there is no other to open an element.
+constexpr double heap = 0.02;
+/// Metric length above which edges near a border are halved.
+constexpr double long_edge = 1.4;
+constexpr int shorten_rounds = 3;
+/// Of the tolerance: how deep an element between nodes on a border is when either side will do.
+constexpr double doubt_share = 1;
 
 using Element = CutTopology::Element;
 using Weights = CutTopology::Weights;
@@ -47,12 +60,16 @@ class Cutter {
 
   bool cut(int zone, const ReferenceSurface<3>& surface, const Progress& progress) {
     zone_ = zone;
-    if (!follow_features(surface, progress.portion(0, 0.4))) return false;
+    if (!measure(progress.portion(0, 0.05))) return false;
+    if (!shorten(progress.portion(0.05, 0.1))) return false;
+    if (!follow_features(surface, progress.portion(0.1, 0.4))) return false;
     if (!measure(progress.portion(0.4, 0.5))) return false;
     if (!snap(progress.portion(0.5, 0.7))) return false;
-    if (!split(progress.portion(0.7, 0.9))) return false;
+    fit().bow();
+    if (!split(1, progress.portion(0.7, 0.8))) return false;
+    if (!open_pierced(progress.portion(0.8, 0.9))) return false;
     tag();
-    return bend(progress.portion(0.9, 1));
+    return fit().bend(progress.portion(0.9, 1));
   }
 
   CutMesh result(const SimplexMesh<3>& original) const {
@@ -88,6 +105,7 @@ class Cutter {
   }
 
  private:
+  BorderFit fit() { return {mesh_, partition_, zone_, params_, phi_}; }
   double phi_at(const Vec<3>& x) const { return partition_.zone(zone_).distance(x); }
   /// The element that contains x, seen from the place of x in the mesh that was given.
   std::optional<std::int32_t> locate(const Vec<3>& x) const {
@@ -234,12 +252,14 @@ class Cutter {
         for (int k = 0; k < 4; ++k)
           if (nodes[k] == now) weights[k] = 1 - sum;
       }
-      const NodeId reached = mesh_.bring_node(into, weights, target);
+      const bool last = sum <= 1 + 1e-9 && sum > 1 - 1e-9;
+      const NodeId reached = mesh_.bring_node(into, weights, target, now, x);
       if (reached == 0 || reached == now) {
         ++lost_;
         return {now, false};
       }
       mesh_.features.insert(mesh_.key(now, reached));
+      if (last) return {reached, true};
       if ((x - at(reached)).norm() >= left) {
         ++lost_;
         return {reached, false};
@@ -257,6 +277,7 @@ class Cutter {
       if (mesh_.active(e))
         for (NodeId n : mesh_.topo.elements[e]) wanted[n] = 1;
     phi_.assign(mesh_.topo.points.size(), 0);
+    slack_.assign(phi_.size(), 0);
     nodes_.clear();
     for (std::size_t n = 1; n < wanted.size(); ++n)
       if (wanted[n]) nodes_.push_back(static_cast<NodeId>(n));
@@ -267,9 +288,42 @@ class Cutter {
       // Far from the box its distance tells enough.
       const double beyond = (x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm();
       phi_[n] = mesh_.metric[n].quad(Vec<3>::Constant(beyond)) > 100 ? beyond : phi_at(x);
-      if (std::abs(phi_[n]) <= mesh_.exact || (mesh_.locked[n] && std::abs(phi_[n]) <= mesh_.on))
+      if (std::abs(phi_[n]) <= mesh_.exact ||
+          (mesh_.locked[n] && std::abs(phi_[n]) <= feature_share * params_.tolerance)) {
+        slack_[n] = std::abs(phi_[n]);
         phi_[n] = 0;
+      }
     });
+  }
+
+  /// Halves the edges near the border that are longer than asked: their elements reach past a
+  /// curved border, and what is cut out of them folds.
+  bool shorten(const Progress& progress) {
+    std::size_t first = 1;
+    for (int round = 0; round < shorten_rounds; ++round) {
+      if (progress.cancelled()) return false;
+      const std::vector<std::array<NodeId, 2>> edges = mesh_.edges_from(first);
+      std::vector<std::pair<double, std::size_t>> far;
+      for (std::size_t i = 0; i < edges.size(); ++i) {
+        const auto [a, b] = edges[i];
+        const Vec<3> e = at(b) - at(a);
+        if (std::min(std::abs(phi_[a]), std::abs(phi_[b])) > e.norm()) continue;
+        const double length2 = 0.5 * (mesh_.metric[a].quad(e) + mesh_.metric[b].quad(e));
+        if (length2 > long_edge * long_edge) far.emplace_back(-length2, i);
+      }
+      std::sort(far.begin(), far.end());
+      first = mesh_.topo.points.size();
+      for (const auto& [negative, i] : far) {
+        const auto [a, b] = edges[i];
+        const Vec<3> x = 0.5 * (at(a) + at(b));
+        const Hold h = mesh_.hold(edges[i]);
+        if (h.allows(partition_, x, mesh_.on) &&
+            mesh_.split_at(edges[i], x, std::array{0.5, 0.5}) != 0)
+          phi_.push_back(phi_at(x));
+      }
+      if (mesh_.topo.points.size() == first) break;
+    }
+    return true;
   }
 
   bool snap(const Progress& progress) {
@@ -305,27 +359,33 @@ class Cutter {
     const double length = e.norm();
     if (std::abs(phi_[a]) + std::abs(phi_[b]) >= length && phi_[a] * phi_[b] >= 0)
       return std::nullopt;
-    const double dip = dip_share * params_.tolerance;
+    const auto slack = [&](NodeId n) {
+      return static_cast<std::size_t>(n) < slack_.size() ? slack_[n] : 0;
+    };
+    const double dip = dip_share * params_.tolerance + std::max(slack(a), slack(b));
     double deep = std::numeric_limits<double>::infinity();
     double t0 = 0, f0 = phi_[a], t1 = 1, f1 = phi_[b];
     if (!(f0 * f1 < 0)) {
       constexpr int samples = 8;
       double last_t = 0, last = f0;
+      std::array<double, 2> most{std::max(f0, f1), std::max(-f0, -f1)};  // outside, inside
       bool found = false;
-      for (int i = 1; i <= samples && !found; ++i) {
+      for (int i = 1; i <= samples; ++i) {
         const double t = static_cast<double>(i) / samples;
-        const double f = i == samples ? f1 : phi_at(at(a) + t * e);
+        const double f = i == samples ? phi_[b] : phi_at(at(a) + t * e);
         if (std::abs(f) <= dip && i < samples) continue;
         if (f == 0) continue;
-        if (last * f < 0) {
+        if (!found && last * f < 0) {
           t0 = last_t, f0 = last, t1 = t, f1 = f;
           found = true;
         }
+        double& side = most[f < 0 ? 1 : 0];
+        side = std::max(side, std::abs(f));
         last_t = t;
         last = f;
       }
       if (!found) return std::nullopt;
-      deep = std::min(std::abs(f0), std::abs(f1));
+      deep = std::min(most[0], most[1]);
     }
     // Regula falsi, Illinois.
     double t = t0;
@@ -353,22 +413,13 @@ class Cutter {
     return t;
   }
 
-  bool split(const Progress& progress) {
-    std::size_t first = 1;  // edges of older nodes are known not to cross
+  /// Splits the edges that cross the border, those between nodes before `first` excepted: they are
+  /// known not to.
+  bool split(std::size_t first, const Progress& progress) {
     for (int round = 0; round < split_rounds; ++round) {
       if (progress.cancelled()) return false;
       progress.report(static_cast<double>(round) / split_rounds);
-      std::vector<std::array<NodeId, 2>> edges;
-      for (std::int32_t e = 0; e < mesh_.count(); ++e) {
-        if (!mesh_.active(e)) continue;
-        const Element& nodes = mesh_.topo.elements[e];
-        for (int i = 0; i < 4; ++i)
-          for (int j = 0; j < i; ++j)
-            if (static_cast<std::size_t>(std::max(nodes[i], nodes[j])) >= first)
-              edges.push_back(mesh_.key(nodes[i], nodes[j]));
-      }
-      std::sort(edges.begin(), edges.end());
-      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+      const std::vector<std::array<NodeId, 2>> edges = mesh_.edges_from(first);
       std::vector<double> where(edges.size(), -1);
       if (!parallel_each(edges.size(), params_.threads, {}, [&](std::size_t i) {
             if (const auto t = crossing(edges[i][0], edges[i][1])) where[i] = *t;
@@ -378,11 +429,12 @@ class Cutter {
       bool any = false;
       for (std::size_t i = 0; i < edges.size(); ++i) {
         if (where[i] <= 0) continue;
-        any = true;
         const auto [a, b] = edges[i];
         const double t = where[i];
         const std::array<double, 2> share{1 - t, t};
         const Vec<3> x = (1 - t) * at(a) + t * at(b);
+        if (!(phi_[a] * phi_[b] < 0) && fit().crowded(edges[i], x)) continue;
+        any = true;
         NodeId n = 0;
         Hold h = mesh_.hold(edges[i]);
         if (!h.free()) {
@@ -399,19 +451,94 @@ class Cutter {
     return true;
   }
 
-  /// The element of the background behind a face of an element; -1: none.
-  std::int32_t across(std::int32_t e, int k) const {
-    const auto face = opposite_facet<3>(mesh_.topo.elements[e], k);
-    for (auto other : mesh_.topo.around.of(face[0]))
-      if (other != e && mesh_.active(other) && std::all_of(face.begin(), face.end(), [&](NodeId n) {
-            return Topology<3>::has(mesh_.topo.elements[other], n);
+  /// A border may pass through an element and cross none of its edges, as a rounded corner smaller
+  /// than the element does: it gets a node on the border there.
+  bool open_pierced(const Progress& progress) {
+    std::size_t first = 1;
+    for (int round = 0; round < pierced_rounds; ++round) {
+      if (progress.cancelled()) return false;
+      std::vector<std::int32_t> near;
+      for (std::int32_t e = 0; e < mesh_.count(); ++e) {
+        if (!mesh_.active(e)) continue;
+        const Element& nodes = mesh_.topo.elements[e];
+        if (static_cast<std::size_t>(*std::max_element(nodes.begin(), nodes.end())) < first)
+          continue;
+        double least = std::numeric_limits<double>::infinity(), longest2 = 0;
+        for (int i = 0; i < 4; ++i) {
+          least = std::min(least, std::abs(phi_[nodes[i]]));
+          for (int j = 0; j < i; ++j)
+            longest2 = std::max(longest2, (at(nodes[i]) - at(nodes[j])).squaredNorm());
+        }
+        if (least * least < longest2) near.push_back(e);
+      }
+      std::vector<std::optional<Pierced>> where(near.size());
+      if (!parallel_each(near.size(), params_.threads, progress, [&](std::size_t i) {
+            const Element& v = mesh_.topo.elements[near[i]];
+            where[i] = pierced_at(partition_.zone(zone_), mesh_.corners(v),
+                                  {phi_[v[0]], phi_[v[1]], phi_[v[2]], phi_[v[3]]},
+                                  pierced_share * params_.tolerance);
           }))
-        return other;
-    return -1;
+        return false;
+      first = mesh_.topo.points.size();
+      std::vector<std::size_t> order;
+      for (std::size_t i = 0; i < near.size(); ++i)
+        if (where[i]) order.push_back(i);
+      std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+        return where[i]->depth > where[j]->depth;
+      });
+      // Neighbors are pierced at the same place: they wait for what comes of this one.
+      std::vector<char> used(first, 0);
+      for (std::size_t i : order) {
+        const Element nodes = mesh_.topo.elements[near[i]];
+        if (!mesh_.topo.alive(near[i]) ||
+            std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) { return used[n] != 0; }))
+          continue;
+        const Weights w = mesh_.weights_in(near[i], where[i]->point);
+        std::vector<NodeId> of;
+        std::vector<double> share;
+        double sum = 0;
+        for (int k = 0; k < 4; ++k)
+          if (w[k] > least_weight) {
+            of.push_back(nodes[k]);
+            share.push_back(w[k]);
+            sum += w[k];
+          }
+        if (of.size() < 2 || !mesh_.hold(of).free()) continue;
+        // Nodes in a heap would help nobody.
+        if (std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) {
+              return mesh_.metric[n].quad(at(n) - where[i]->point) < heap * heap;
+            }))
+          continue;
+        Vec<3> x = Vec<3>::Zero();
+        double reach = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < of.size(); ++k) {
+          share[k] /= sum;
+          x += share[k] * at(of[k]);
+        }
+        for (NodeId n : of) reach = std::min(reach, (at(n) - x).norm());
+        // On the border, unless that is far.
+        const ZoneDistance<3> d = partition_.zone(zone_).at(x);
+        const Vec<3> foot = x - d.distance * d.normal;
+        const bool settles =
+            std::abs(d.distance) < 0.5 * reach && std::abs(phi_at(foot)) <= mesh_.on;
+        if (fit().crowded(of, settles ? foot : x)) continue;
+        if (settles && mesh_.split_at(of, foot, share) != 0) {
+          phi_.push_back(0);
+        } else {
+          if (mesh_.split_at(of, x, share) == 0) continue;
+          phi_.push_back(std::abs(d.distance) <= mesh_.on ? 0 : d.distance);
+        }
+        for (NodeId n : nodes) used[n] = 1;
+      }
+      if (mesh_.topo.points.size() == first) break;
+      if (!split(first, {})) return false;
+    }
+    return true;
   }
 
   void tag() {
-    std::vector<std::int32_t> inside, flat;
+    std::vector<std::int32_t> doubtful;
+    std::vector<char> inside(static_cast<std::size_t>(mesh_.count()), 0);
     for (std::int32_t e = 0; e < mesh_.count(); ++e) {
       if (!mesh_.active(e)) continue;
       const Element& nodes = mesh_.topo.elements[e];
@@ -419,73 +546,26 @@ class Cutter {
       for (NodeId n : nodes)
         if (std::abs(phi_[n]) > std::abs(most)) most = phi_[n];
       if (most == 0) {
-        most = phi_at((at(nodes[0]) + at(nodes[1]) + at(nodes[2]) + at(nodes[3])) / 4);
-        if (std::abs(most) <= dip_share * params_.tolerance) flat.push_back(e);
+        most = deepest_in(partition_.zone(zone_), mesh_.corners(nodes));
+        const double doubt = fit().smooth_between(nodes) ? doubt_share : dip_share;
+        if (std::abs(most) <= doubt * params_.tolerance) doubtful.push_back(e);
       }
-      if (most < 0) inside.push_back(e);
+      inside[e] = most < 0;
     }
-    // A splinter between nodes on the border goes to the side that most of its faces touch.
-    std::vector<char> is_inside(static_cast<std::size_t>(mesh_.count()), 0);
-    for (auto e : inside) is_inside[e] = 1;
-    for (auto e : flat) {
-      int other = 0;
+    BorderSides sides(mesh_, inside);
+    sides.settle(doubtful);
+    const std::int32_t count = mesh_.count();
+    for (std::int32_t e = 0; e < count; ++e) {
+      if (!inside[e]) continue;
       for (int k = 0; k < 4; ++k) {
-        const std::int32_t next = across(e, k);
-        other += next >= 0 && is_inside[next] != is_inside[e];
-      }
-      if (other >= 3) is_inside[e] = !is_inside[e];
-    }
-    inside.clear();
-    for (std::int32_t e = 0; e < mesh_.count(); ++e)
-      if (is_inside[e]) inside.push_back(e);
-    for (auto e : inside) mesh_.topo.label[e] = zone_;
-    for (auto e : inside)
-      for (int k = 0; k < 4; ++k)
-        if (across(e, k) >= 0)
+        const std::int32_t next = sides.across(e, k);
+        if (next >= 0 && !inside[next])
           mesh_.topo.add(Topology<3>::virtual_element(opposite_facet<3>(mesh_.topo.elements[e], k)),
                          mesh_.first_interface + zone_);
-  }
-
-  /// Splits the edges of the zone's interface whose middle is too far from the border there, until
-  /// the chords keep the tolerance.
-  bool bend(const Progress& progress) {
-    const std::int32_t label = mesh_.first_interface + zone_;
-    std::size_t first = 1;
-    for (int round = 0; round < bend_rounds; ++round) {
-      if (progress.cancelled()) return false;
-      progress.report(static_cast<double>(round) / bend_rounds);
-      std::vector<std::array<NodeId, 2>> edges;
-      for (std::int32_t e = 0; e < mesh_.count(); ++e) {
-        if (!mesh_.topo.alive(e) || !mesh_.topo.is_virtual(e) || mesh_.topo.label[e] != label)
-          continue;
-        const Element& v = mesh_.topo.elements[e];
-        for (int i = 1; i < 4; ++i) {
-          const NodeId a = v[i], b = v[1 + i % 3];
-          if (static_cast<std::size_t>(std::max(a, b)) >= first) edges.push_back(mesh_.key(a, b));
-        }
       }
-      std::sort(edges.begin(), edges.end());
-      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-      std::vector<double> off(edges.size(), 0);
-      if (!parallel_each(edges.size(), params_.threads, {}, [&](std::size_t i) {
-            off[i] = std::abs(phi_at(0.5 * (at(edges[i][0]) + at(edges[i][1]))));
-          }))
-        return false;
-      first = mesh_.topo.points.size();
-      std::vector<std::pair<double, std::size_t>> far;
-      for (std::size_t i = 0; i < edges.size(); ++i)
-        if (off[i] > bend_share * params_.tolerance) far.emplace_back(-off[i], i);
-      std::sort(far.begin(), far.end());
-      for (const auto& [negative, i] : far) {
-        const auto [a, b] = edges[i];
-        const Vec<3> x = 0.5 * (at(a) + at(b));
-        const auto y = mesh_.hold(edges[i]).settle(partition_, x, mesh_.on);
-        if (!y || (*y - x).norm() > 0.3 * (at(b) - at(a)).norm()) continue;
-        mesh_.split_at(edges[i], *y, std::array{0.5, 0.5});
-      }
-      if (mesh_.topo.points.size() == first) break;
     }
-    return true;
+    for (std::int32_t e = 0; e < count; ++e)
+      if (inside[e]) mesh_.topo.label[e] = zone_;
   }
 
   const Vec<3>& at(NodeId n) const { return mesh_.at(n); }
@@ -498,6 +578,7 @@ class Cutter {
   CutTopology mesh_;
   int zone_ = 0;
   std::vector<double> phi_;    ///< [node] of the zone that is being cut
+  std::vector<double> slack_;  ///< [node that was there before edges were split] how far off it is
   std::vector<NodeId> nodes_;  ///< of the background
   std::size_t lost_ = 0;
 };

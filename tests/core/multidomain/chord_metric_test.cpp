@@ -61,5 +61,32 @@ TEST(ChordMetric, SizesGrowWithTheDistance) {
   }
 }
 
+TEST(ChordField, SizesGrowWithTheDistanceFromWhatIsCurved) {
+  // Above the plane at a box's top the nearest border is flat: the ball asks all the same.
+  const double r = 0.2, growth = 0.5;
+  const ReferenceSurface<3> sphere = testing::sphere_surface(r, 5, {0, 0, 0});
+  const Partition<3> partition({{"ball", ball_zone<3>(Vec<3>::Zero(), r)},
+                                {"half", half_space_zone<3>(Vec<3>(0, 0, 1), -0.5)}});
+  const ChordField field(partition, {sphere, {}}, tolerance, growth);
+  const Metric<3> given = isotropic_metric<3>(large);
+  const Vec<3> x(0, 0, -0.45);
+  const double expected = chord(r) + growth * (0.45 - r);
+  ASSERT_LT(expected, large);
+  EXPECT_LT((with_chords(given, partition, x, tolerance) - given).norm(), 1e-9 * given.norm());
+  const Metric<3> m = field.at(given, x);
+  EXPECT_NEAR(1 / metric_length<3>(Vec<3>::UnitX(), m), expected, 0.05 * expected);
+  EXPECT_NEAR(1 / metric_length<3>(Vec<3>::UnitZ(), m), large, 0.02 * large);
+}
+
+TEST(ChordField, FlatSidesAskForNothing) {
+  ReferenceSurface<3> s = testing::box_surface({1, 2, 3});
+  find_features(s, 0.6);
+  const Partition<3> partition({{"box", surface_zone<3>(s)}});
+  const ChordField field(partition, {s}, tolerance);
+  const Metric<3> given = isotropic_metric<3>(large);
+  for (const Vec<3>& x : {Vec<3>(0.5, 1, 3.1), Vec<3>(0.01, 0.02, 2.9), Vec<3>(0.5, 0.5, 0.5)})
+    EXPECT_LT((field.at(given, x) - given).norm(), 1e-9 * given.norm());
+}
+
 }  // namespace
 }  // namespace lamella
