@@ -11,7 +11,9 @@ namespace lamella {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostCells = 2000000;
+/// More cells than this are not looked at in a level: what touches all over is told as finely as
+/// that, with its error.
+constexpr std::size_t kMostCells = 300000;
 
 /// What is less than zero where the condition holds, about a point; 1-Lipschitz.
 struct Condition {

@@ -296,13 +296,21 @@ struct Sample {
   double area = 0;
 };
 
-/// The middles of the pieces of facets cut evenly until none is longer than `spacing`, one for
-/// about the area of two of them.
+/// The middles of the pieces of facets cut evenly until none is longer than `spacing`, one for each
+/// `enough` of area: of small and of thin pieces one stands for those before it in the list.
 std::vector<Sample> samples_of(const ReferenceSurface<3>& surface, double spacing) {
   std::vector<Sample> samples;
-  // Of facets much smaller than that one stands for its neighbors in the list.
-  const double enough = 0.5 * spacing * spacing;
+  const double enough = 0.4 * spacing * spacing;
   double waiting = 0;
+  Sample last;
+  const auto add = [&](std::size_t f, const Vec<3>& at, double area) {
+    last = {static_cast<std::int32_t>(f), at, 0};
+    waiting += area;
+    if (waiting < enough) return;
+    last.area = waiting;
+    samples.push_back(last);
+    waiting = 0;
+  };
   for (std::size_t f = 0; f < surface.facets.size(); ++f) {
     const auto& v = surface.facets[f];
     const std::array<Vec<3>, 3> p{surface.points[v[0]], surface.points[v[1]], surface.points[v[2]]};
@@ -311,23 +319,18 @@ std::vector<Sample> samples_of(const ReferenceSurface<3>& surface, double spacin
     const double longest =
         std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
     const int cuts = std::max(1, static_cast<int>(std::ceil(longest / spacing)));
-    if (cuts == 1) {
-      waiting += area;
-      if (waiting < enough && f + 1 < surface.facets.size()) continue;
-      samples.push_back({static_cast<std::int32_t>(f), (p[0] + p[1] + p[2]) / 3, waiting});
-      waiting = 0;
-      continue;
-    }
     // Rows of upright pieces, and of those upside down between them.
     const Vec<3> a = (p[1] - p[0]) / cuts, b = (p[2] - p[0]) / cuts;
     for (int i = 0; i < cuts; ++i)
       for (int j = 0; i + j < cuts; ++j)
         for (const double third : {1.0, 2.0}) {
           if (third > 1 && i + j + 1 >= cuts) continue;
-          samples.push_back({static_cast<std::int32_t>(f),
-                             p[0] + (i + third / 3) * a + (j + third / 3) * b,
-                             area / (cuts * cuts)});
+          add(f, p[0] + (i + third / 3) * a + (j + third / 3) * b, area / (cuts * cuts));
         }
+  }
+  if (waiting > 0) {
+    last.area = waiting;
+    samples.push_back(last);
   }
   return samples;
 }
