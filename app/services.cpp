@@ -4,6 +4,12 @@
 
 #include "core/io/mesh_file.h"
 #include "core/io_vtk/vtk_formats.h"
+#ifdef LAMELLA_WITH_MED
+#include "core/io_med/med.h"
+#endif
+#ifdef LAMELLA_WITH_CGNS
+#include "core/io_cgns/cgns.h"
+#endif
 #include "core/netgen/netgen_mesher.h"
 #include "core/study/measure.h"
 
@@ -121,6 +127,16 @@ const MeshFormats& mesh_formats() {
     MeshFormats all;
     all.add(own_formats());
     all.add(vtk_formats());
+#ifdef LAMELLA_WITH_MED
+    all.add({med_format()});
+#else
+    all.add_missing("med", ".med", "This build knows no MED files: libmedC was not there.");
+#endif
+#ifdef LAMELLA_WITH_CGNS
+    all.add({cgns_format()});
+#else
+    all.add_missing("cgns", ".cgns", "This build knows no CGNS files: libcgns was not there.");
+#endif
     return all;
   }();
   return formats;

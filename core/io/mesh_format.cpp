@@ -29,7 +29,8 @@ std::string allowed(const std::string& name, const NameRule& rule) {
     const std::size_t length = letter_at(name, at);
     const auto c = static_cast<unsigned char>(name[at]);
     const bool plain = c < 128 && (std::isalnum(c) || rule.marks.find(name[at]) != rule.marks.npos);
-    if (plain || (rule.any && c >= ' ' && c != '"' && c != 127))
+    if (plain || (rule.any && c >= ' ' && c != '"' && c != 127 &&
+                  rule.never.find(name[at]) == rule.never.npos))
       out += name.substr(at, length);
     else
       out += '_';

@@ -19,6 +19,7 @@ namespace lamella {
 struct NameRule {
   bool exact = false;  ///< all names just as they are
   bool any = true;
+  std::string_view never = {};   ///< not even with `any`
   std::string_view marks = "_";  ///< allowed beside letters and digits where not `any`
   std::size_t longest = 0;       ///< bytes; 0: no bound
   bool shared = false;      ///< bodies and groups share one list of names, in which case is ignored

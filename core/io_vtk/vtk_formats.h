@@ -4,7 +4,7 @@
 
 namespace lamella {
 
-/// The formats that VTK writes: vtu.
+/// The formats that VTK writes: vtu, exodus.
 std::vector<MeshFormat> vtk_formats();
 
 }  // namespace lamella
