@@ -171,7 +171,12 @@ Result<ExportCertificate> convert_mesh(const fs::path& from, const fs::path& to,
                                        const ExportOptions& options, const Progress& progress) {
   if (Result<void> known = check_export_name(to, options); !known) return known.error();
   Result<MeshContent> content = read_content(from, progress.portion(0, 0.4));
-  if (!content) return content.error();
+  if (!content) {
+    // Whatever keeps an input from being read, it is the input that is bad.
+    Error error = content.error();
+    if (error.code == Code::io) error.code = Code::bad_input;
+    return error;
+  }
   MeshFields fields;
   if (!content->metric.empty()) fields.metric = &content->metric;
   if (!content->thickness.empty()) fields.thickness = &content->thickness;

@@ -1,6 +1,7 @@
 #include "core/io/unv.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 
 #include "core/base/atomic_file.h"
@@ -15,11 +16,17 @@ namespace {
 constexpr std::size_t kPollEvery = 1 << 14;
 constexpr std::int64_t kTetrahedron = 111, kTriangle = 91, kPlaneTriangle = 41;
 
-/// Right-justified in ten columns.
+/// Right-justified.
+void justified(TextBuilder& out, std::string_view digits, std::size_t width) {
+  constexpr std::string_view kBlanks = "                         ";
+  out << kBlanks.substr(0, width - std::min(width, digits.size())) << digits;
+}
+
+/// In ten columns.
 void column(TextBuilder& out, std::int64_t value) {
   char digits[24];
-  const int n = std::snprintf(digits, sizeof digits, "%10lld", static_cast<long long>(value));
-  out << std::string_view(digits, static_cast<std::size_t>(n));
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  justified(out, {digits, static_cast<std::size_t>(end - digits)}, 10);
 }
 
 template <class... Values>
@@ -28,12 +35,13 @@ void record(TextBuilder& out, Values... values) {
   out << '\n';
 }
 
-/// Seventeen digits, so that it reads back to the same value.
+/// In 25 columns, with seventeen digits, so that it reads back to the same value.
 void real(TextBuilder& out, double value) {
   char digits[40];
-  const int n = std::snprintf(digits, sizeof digits, "%25.16E", value);
-  if (char* e = std::find(digits, digits + n, 'E'); e != digits + n) *e = 'D';
-  out << std::string_view(digits, static_cast<std::size_t>(n));
+  const auto end =
+      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::scientific, 16).ptr;
+  if (char* e = std::find(digits, end, 'e'); e != end) *e = 'D';
+  justified(out, {digits, static_cast<std::size_t>(end - digits)}, 25);
 }
 
 void begin(TextBuilder& out, int set) {

@@ -252,6 +252,7 @@ Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
   writer->SetInputData(grid);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
+  writer->SetCompressionLevel(1);  // three times as fast as 5, for a few percent
   vtkNew<vtkCallbackCommand> watch;
   watch->SetClientData(const_cast<Progress*>(&progress));
   watch->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
