@@ -37,13 +37,13 @@ TEST_F(CliExport, AChainOfFormatsKeepsNamesMeasuresMetricAndRatios) {
     EXPECT_EQ(lines().back()["nodes"], made.mesh.node_count());
     from = to;
   }
-  const MeshContent out = read("msh", "out.msh");
+  const MeshContent last = read("msh", "out.msh");
   const ExportCertificate proof =
-      certify("out.msh", "Gmsh MSH 4.1", summarize(made.mesh), summarize(out.mesh));
+      certify("out.msh", "Gmsh MSH 4.1", summarize(made.mesh), summarize(last.mesh));
   EXPECT_TRUE(proof.agrees) << proof.finding;
-  ASSERT_EQ(out.metric.size(), made.metric.size());
-  EXPECT_LE((out.metric[7] - made.metric[7]).norm(), 1e-9 * made.metric[7].norm());
-  EXPECT_EQ(out.of_elements.size(), 3u);
+  ASSERT_EQ(last.metric.size(), made.metric.size());
+  EXPECT_LE((last.metric[7] - made.metric[7]).norm(), 1e-9 * made.metric[7].norm());
+  EXPECT_EQ(last.of_elements.size(), 3u);
 }
 
 TEST_F(CliExport, ACaseIsAFolderAndTellsItsOrthogonality) {

@@ -629,8 +629,8 @@ TEST_F(Cli, CtrlCWritesTheBestMeshAndNothingElse) {
   EXPECT_TRUE(adapted);
   ::kill(pid, SIGINT);
   EXPECT_EQ(finish(pipe), 130) << err;
-  EXPECT_EQ(folder.names(),
-            (Names{"t.msh", "t.report.html", "t.report.json", "t.step", "t.study.json"}));
+  EXPECT_EQ(folder.names(), (Names{"t.msh", "t.msh.json", "t.report.html", "t.report.json",
+                                   "t.step", "t.study.json"}));
   EXPECT_TRUE(read_msh(folder / "t.msh").ok());
 }
 
