@@ -15,6 +15,7 @@ namespace lamella {
 namespace {
 
 constexpr std::size_t kPollEvery = 1 << 14;
+constexpr std::int64_t kMostInSet = 1 << 28;
 /// Face of a C3D4 opposite to a vertex: S1 is 1-2-3, S2 1-4-2, S3 2-4-3, S4 3-4-1.
 constexpr std::array<int, 4> kFaceOfVertex = {3, 4, 2, 1};
 
@@ -141,28 +142,29 @@ class Reader {
     return true;
   }
   bool element_set(std::string_view line) {
-    Set& set = set_called(keyword_.value("ELSET"));
     const auto parts = between_commas(line);
+    std::vector<std::int64_t> members;
     std::int64_t first = 0, last = 0, step = 1;
     if (keyword_.parameters.count("GENERATE")) {
       if (parts.size() < 2 || !parse(parts[0], first) || !parse(parts[1], last)) return false;
       if (parts.size() > 2 && !parts[2].empty() && (!parse(parts[2], step) || step < 1))
         return false;
-      if (last - first > 1000000000) return false;
-      for (; first <= last; first += step) set.elements.push_back(first);
-      return true;
-    }
-    for (const std::string_view part : parts) {
-      if (part.empty()) continue;
-      if (parse(part, first)) {
-        set.elements.push_back(first);
-      } else {
-        const std::vector<std::int64_t> others = set_called(std::string(part)).elements;
-        Set& into = set_called(keyword_.value("ELSET"));
-        into.elements.insert(into.elements.end(), others.begin(), others.end());
+      if (last < first || last - first > kMostInSet) return false;
+      for (; first <= last; first += step) members.push_back(first);
+    } else {
+      for (const std::string_view part : parts) {
+        if (parse(part, first)) {
+          members.push_back(first);
+        } else if (!part.empty()) {
+          const Set& other = set_called(std::string(part));
+          members.insert(members.end(), other.elements.begin(), other.elements.end());
+        }
       }
     }
-    return true;
+    Set& set = set_called(keyword_.value("ELSET"));
+    set.elements.insert(set.elements.end(), members.begin(), members.end());
+    // Sets of each other, again and again, could grow without end.
+    return static_cast<std::int64_t>(set.elements.size()) <= kMostInSet;
   }
   bool face(std::string_view line) {
     const auto parts = between_commas(line);

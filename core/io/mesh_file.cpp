@@ -374,6 +374,10 @@ Result<MeshContent> read_mesh_file(const MeshFormat& format, const fs::path& fil
                  "Fill it first: lamella-cli generate."};
   Result<MeshContent> content = format.read(file, progress);
   if (!content) return content.error();
+  for (const Vec<3>& x : content->mesh.points)
+    if (!x.allFinite())
+      return Error{Code::bad_input, "\"" + file.string() + "\": a coordinate is no number.",
+                   "The file is damaged; write it again."};
   if (Result<void> done = complete(*content, file); !done) return done.error();
   return content;
 }

@@ -100,7 +100,9 @@ struct FakeServices {
       if (!std::filesystem::is_directory(file.parent_path()))
         return Error{Code::io, "Cannot write " + file.string() + ".", "Choose another folder."};
       ++exports;
-      return ExportCertificate{.notes = {"a note of the export"}};
+      ExportCertificate proof;
+      proof.notes = {"a note of the export"};
+      return proof;
     };
     services.sample_part = [](const std::string& name) -> Result<std::filesystem::path> {
       return Error{Code::usage, "No sample part is called " + name + ".", ""};

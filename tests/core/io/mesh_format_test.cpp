@@ -93,6 +93,100 @@ TEST(Sidecar, TellsWhatTheFormatHasNoPlaceFor) {
   EXPECT_EQ(json["filling"]["elements"][1], nlohmann::json({6, 0.75, 0.25, 0}));
 }
 
+/// A file of another program, read by the format of its ending.
+Result<MeshContent> read_text(const test::TemporaryFolder& folder, const std::string& name,
+                              const std::string& text) {
+  EXPECT_TRUE(write_file(folder / name, text).ok());
+  MeshFormats formats;
+  formats.add(own_formats());
+  return read_mesh_file(**formats.of_file(name), folder / name);
+}
+
+TEST(ForeignFiles, AbaqusWithGapsGeneratedSetsAndOtherElements) {
+  const test::TemporaryFolder folder;
+  const auto mesh = read_text(folder, "a.inp",
+                              "*Heading\nanything\n*Node\n10, 0, 0, 0\n20, 1, 0, 0\n"
+                              "30, 0, 1., 0\n40, 0, 0, 1E0\n50, 1, 1, 1\n"
+                              "*Element, type=C3D4, elset=Part\n7, 10, 20, 30, 40\n"
+                              "9, 20, 30, 40, 50\n*ELEMENT, TYPE=S3\n11, 10, 20, 30\n"
+                              "*Elset, elset=lower, generate\n7, 7, 1\n"
+                              "*Surface, type=ELEMENT, name=base\nlower, S1\n");
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->mesh.bodies, (std::vector<std::string>{"lower", "body"}));
+  EXPECT_EQ(mesh->mesh.groups, (std::vector<std::string>{"base", "unnamed"}));
+  EXPECT_EQ(mesh->mesh.facets.size(), 6u);
+  EXPECT_EQ(summarize(mesh->mesh).groups[0].measure, 0.5);
+  EXPECT_TRUE(validate<3>(mesh->mesh).ok());
+}
+
+// A set of sets must not be read from where the list of sets was before it grew.
+TEST(ForeignFiles, AbaqusSetsOfSetsThatAreNotThere) {
+  const test::TemporaryFolder folder;
+  std::string text =
+      "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT, TYPE=C3D4\n"
+      "1,1,2,3,4\n*ELSET, ELSET=all\n";
+  for (int i = 0; i < 40; ++i) text += "s" + std::to_string(i) + ", 1, ";
+  const auto mesh = read_text(folder, "a.inp", text + "\n");
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->mesh.elements.size(), 1u);
+}
+
+TEST(ForeignFiles, NastranInEveryFieldFormatAndOrder) {
+  const test::TemporaryFolder folder;
+  const auto mesh =
+      read_text(folder, "a.bdf",
+                "SOL 101\nCEND\nBEGIN BULK\n"
+                "CTETRA,1,5,1,2,3,4\n"
+                "GRID,1,,0.,0.,0.\n"
+                "GRID           2             1.0     0.0     0.0\n"
+                "GRID*                  3"
+                "                             0.0           2.5-1\n*                    0.\n"
+                "GRID    4               0.      0.     1.+0\n"
+                "CTRIA3  2       6       1       3       2\nENDDATA\n");
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->mesh.bodies, std::vector<std::string>{"solid 5"});
+  EXPECT_EQ(mesh->mesh.groups, (std::vector<std::string>{"shell 6", "unnamed"}));
+  EXPECT_NEAR(summarize(mesh->mesh).bodies[0].measure, 0.25 / 6, 1e-15);
+}
+
+TEST(ForeignFiles, UnvOfOneGroupWithPlaneTriangles) {
+  const test::TemporaryFolder folder;
+  std::string text = "    -1\n  2411\n";
+  const char* points[] = {"0.0D+00 0.0D+00 0.0D+00", "1.0D+00 0.0D+00 0.0D+00",
+                          "0.0D+00 1.0D+00 0.0D+00", "0.0D+00 0.0D+00 2.0D+00"};
+  for (int i = 0; i < 4; ++i) {
+    char line[120];
+    std::snprintf(line, sizeof line, "%10d%10d%10d%10d\n%25.7s%25.7s%25.7s\n", 5 * i + 5, 1, 1, 11,
+                  points[i], points[i] + 8, points[i] + 16);
+    text += line;
+  }
+  text +=
+      "    -1\n    -1\n  2412\n"
+      "         3       111         1         1         7         4\n"
+      "         5        10        15        20\n"
+      "         8        41         1         1         7         3\n"
+      "         5        15        10\n    -1\n    -1\n  2477\n"
+      "         1         0         0         0         0         0         0         1\n"
+      "the gate\n         8         8         0         0\n    -1\n";
+  const auto mesh = read_text(folder, "a.unv", text);
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->mesh.groups, (std::vector<std::string>{"the gate", "unnamed"}));
+  EXPECT_NEAR(summarize(mesh->mesh).bodies[0].measure, 1.0 / 3, 1e-15);
+  EXPECT_TRUE(validate<3>(mesh->mesh).ok());
+}
+
+TEST(ForeignFiles, CoordinatesThatAreNoNumbersAreRefused) {
+  const test::TemporaryFolder folder;
+  for (const std::string bad : {"nan", "inf", "1e999", "x"}) {
+    const auto mesh = read_text(folder, "a.inp",
+                                "*NODE\n1,0,0,0\n2,1,0," + bad +
+                                    "\n3,0,1,0\n4,0,0,1\n"
+                                    "*ELEMENT, TYPE=C3D4\n1,1,2,3,4\n");
+    ASSERT_FALSE(mesh.ok()) << bad;
+    EXPECT_EQ(mesh.error().code, Code::bad_input);
+  }
+}
+
 TEST(OpenFoam, PatchTypesFollowTheNames) {
   EXPECT_EQ(patch_type("Gate 1"), "patch");
   EXPECT_EQ(patch_type("vents"), "patch");

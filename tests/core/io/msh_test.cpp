@@ -113,10 +113,13 @@ INSTANTIATE_TEST_SUITE_P(TextAndBinary, Msh, testing::Bool(),
 
 TEST(MshRead, OtherVersionsAreRefusedWithAHint) {
   const test::TemporaryFolder folder;
-  ASSERT_TRUE(write_file(folder / "old.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n").ok());
-  const Result<MeshContent> old = read_msh(folder / "old.msh");
-  ASSERT_FALSE(old.ok());
-  EXPECT_NE(old.error().hint.find("msh41"), std::string::npos);
+  for (const std::string version : {"1.0 0 8", "2.2 1 8", "3.0 0 8", "4.0 0 8"}) {
+    ASSERT_TRUE(
+        write_file(folder / "old.msh", "$MeshFormat\n" + version + "\n$EndMeshFormat\n").ok());
+    const Result<MeshContent> old = read_msh(folder / "old.msh");
+    ASSERT_FALSE(old.ok());
+    EXPECT_NE(old.error().hint.find("msh41"), std::string::npos) << version;
+  }
 }
 
 TEST(MshRead, NodesNumberedWithGapsAreRenumberedInOrder) {
