@@ -141,7 +141,7 @@ TEST(ForeignFiles, NastranInEveryFieldFormatAndOrder) {
                 "GRID           2             1.0     0.0     0.0\n"
                 "GRID*                  3"
                 "                             0.0           2.5-1\n*                    0.\n"
-                "GRID    4               0.      0.    1.+0\n"
+                "GRID    4               0.      0.      1.+0\n"
                 "CTRIA3  2       6       1       3       2\nENDDATA\n");
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   EXPECT_EQ(mesh->mesh.bodies, std::vector<std::string>{"solid 5"});
