@@ -236,12 +236,12 @@ void rename(const Json& entries, std::vector<std::string>& names, std::vector<st
 
 void restore_filling(const Json& filling, MeshContent& content) {
   const SimplexMesh<3>& mesh = content.mesh;
-  for (std::size_t k = 0; k < filling["bodies"].size(); ++k) {
-    const std::string name = filling["bodies"][k];
+  for (std::size_t k = 0; k < filling.at("bodies").size(); ++k) {
+    const std::string name = filling.at("bodies")[k];
     ElementField field{std::string(kFillingField) + name, {}};
     for (const std::int32_t body : mesh.element_body)
       field.values.push_back(mesh.bodies[body] == name ? 1 : 0);
-    for (const Json& entry : filling["elements"])
+    for (const Json& entry : filling.at("elements"))
       if (const std::size_t e = entry.at(0); e >= 1 && e <= field.values.size())
         field.values[e - 1] = entry.at(k + 1);
     content.of_elements.push_back(std::move(field));
@@ -259,17 +259,23 @@ std::string provenance_of(Json json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// The sidecar, if it is one and was written with this mesh.
-Json sidecar_for(const MeshContent& content, const fs::path& file) {
+Error damaged(const fs::path& file, const std::string& finding) {
+  return {Code::bad_input, "\"" + sidecar_of(file).string() + "\" is damaged: " + finding,
+          "Write the mesh again, or remove this file: names are then those of the mesh."};
+}
+
+/// The sidecar, if it was written with this mesh; else null.
+Result<Json> sidecar_for(const MeshContent& content, const fs::path& file) {
   std::error_code ec;
-  if (!fs::is_regular_file(sidecar_of(file), ec)) return {};
+  if (!fs::is_regular_file(sidecar_of(file), ec)) return Json{};
   const Result<std::string> text = read_file(sidecar_of(file));
-  if (!text) return {};
+  if (!text) return text.error();
   Json json = Json::parse(*text, nullptr, false);
+  if (json.is_discarded()) return damaged(file, "it is no JSON.");
   if (!json.is_object() || !json.contains("nodes") || !json.contains("elements") ||
       json["nodes"] != content.mesh.node_count() ||
       json["elements"] != content.mesh.element_count())
-    return {};
+    return Json{};
   return json;
 }
 
@@ -319,7 +325,9 @@ void compare_fields(const SimplexMesh<3>& mesh, const MeshFields& fields, const 
 fs::path sidecar_of(const fs::path& file) { return file.string() + ".json"; }
 
 Result<void> complete(MeshContent& content, const fs::path& file) {
-  const Json json = sidecar_for(content, file);
+  const Result<Json> sidecar = sidecar_for(content, file);
+  if (!sidecar) return sidecar.error();
+  const Json& json = *sidecar;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   try {
     if (json.is_object()) {
@@ -327,7 +335,7 @@ Result<void> complete(MeshContent& content, const fs::path& file) {
       if (json.contains("bodies")) {
         const std::vector<std::string> before = mesh.bodies;
         if (json.contains("element_bodies"))
-          take_runs(json["element_bodies"], json["bodies"], mesh.bodies, mesh.element_body);
+          take_runs(json.at("element_bodies"), json.at("bodies"), mesh.bodies, mesh.element_body);
         else
           rename(json["bodies"], mesh.bodies, mesh.element_body);
         for (ElementField& field : content.of_elements)
@@ -337,7 +345,7 @@ Result<void> complete(MeshContent& content, const fs::path& file) {
                 field.name = std::string(kFillingField) + entry.value("name", "");
       }
       if (json.contains("facet_groups"))
-        take_runs(json["facet_groups"], json["groups"], mesh.groups, mesh.facet_group);
+        take_runs(json.at("facet_groups"), json.at("groups"), mesh.groups, mesh.facet_group);
       else if (json.contains("groups"))
         rename(json["groups"], mesh.groups, mesh.facet_group);
       if (json.value("unit", "mm") == "m") content.unit = LengthUnit::m;
@@ -351,13 +359,11 @@ Result<void> complete(MeshContent& content, const fs::path& file) {
           content.metric = std::move(*metric);
         }
       }
-      if (json.contains("filling")) restore_filling(json["filling"], content);
+      if (json.contains("filling")) restore_filling(json.at("filling"), content);
       content.provenance = provenance_of(json);
     }
   } catch (const Json::exception& error) {
-    return Error{Code::bad_input,
-                 "\"" + sidecar_of(file).string() + "\" is damaged: " + error.what(),
-                 "Write the mesh again, or remove the file: names are then those of the mesh."};
+    return damaged(file, error.what());
   }
   if (content.unit == LengthUnit::m) {
     scale(1e3, content.mesh.points, content.metric, content.thickness);

@@ -93,6 +93,25 @@ TEST(Sidecar, TellsWhatTheFormatHasNoPlaceFor) {
   EXPECT_EQ(json["filling"]["elements"][1], nlohmann::json({6, 0.75, 0.25, 0}));
 }
 
+TEST(Sidecar, ADamagedOneIsToldInsteadOfLosingNames) {
+  const test::TemporaryFolder folder;
+  const test::ThreeBodies made;
+  MeshFormats formats;
+  formats.add(own_formats());
+  const MeshFormat& format = **formats.called("abaqus");
+  ASSERT_TRUE(write_mesh_file(format, made.mesh, made.fields, folder / "m.inp").ok());
+  const std::string good = read_file(folder / "m.inp.json").value();
+  std::string without_bodies = good;
+  without_bodies.replace(good.rfind("\"bodies\""), 8, "\"others\"");
+  for (const std::string& bad : {good.substr(0, good.size() / 2), without_bodies}) {
+    ASSERT_TRUE(write_file(folder / "m.inp.json", bad).ok());
+    const Result<MeshContent> read = read_mesh_file(format, folder / "m.inp");
+    ASSERT_FALSE(read.ok());
+    EXPECT_EQ(read.error().code, Code::bad_input);
+    EXPECT_NE(read.error().message.find("m.inp.json"), std::string::npos);
+  }
+}
+
 /// A file of another program, read by the format of its ending.
 Result<MeshContent> read_text(const test::TemporaryFolder& folder, const std::string& name,
                               const std::string& text) {
