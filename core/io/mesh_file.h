@@ -28,8 +28,8 @@ Result<MeshContent> read_mesh_file(const MeshFormat& format, const std::filesyst
                                    const Progress& progress = {});
 
 /// Takes names, unit, metric and filling ratios from the sidecar, if there is one that was written
-/// with this mesh, and turns all lengths into mm. Errors: bad_input (a metric file that is
-/// damaged).
+/// with this mesh, and turns all lengths into mm. Errors: bad_input (a file beside
+/// it is damaged).
 Result<void> complete(MeshContent& content, const std::filesystem::path& file);
 
 }  // namespace lamella
