@@ -10,6 +10,7 @@ namespace lamella::cli {
 int run_mesh(const MeshCommand& command, const std::string& line, Console& console);
 int run_adapt(const AdaptCommand& command, Console& console);
 int run_generate(const GenerateCommand& command, Console& console);
+int run_export(const ExportCommand& command, Console& console);
 int run_check(const CheckCommand& command, Console& console);
 int run_info(const InfoCommand& command, Console& console);
 int run_sample(const SampleCommand& command, Console& console);

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "app/services.h"
+#include "core/io/mesh_file.h"
 #include "core/mesh/quality.h"
 #include "core/metric/analytic.h"
 
@@ -31,11 +32,30 @@ Error of_input(Error error) {
 
 Result<AnyMesh> read_any(const std::string& file, MetricField<3>* metric,
                          const Progress& progress) {
-  if (std::filesystem::path(file).extension() == ".mesh") return read_medit(file, progress);
+  if (fs::path(file).extension() == ".mesh") {
+    Result<AnyMesh> any = read_medit(file, progress);
+    if (!any || !std::holds_alternative<SimplexMesh<3>>(*any)) return any;
+    MeshContent content;
+    content.mesh = std::get<SimplexMesh<3>>(std::move(*any));
+    if (Result<void> done = complete(content, file); !done) return done.error();
+    if (metric) *metric = std::move(content.metric);
+    return AnyMesh(std::move(content.mesh));
+  }
   Result<MeshState> state = read_mesh(file, progress);
   if (!state) return state.error();
   if (metric) *metric = std::move(state->metric);
   return AnyMesh(std::move(state->mesh));
+}
+
+void tell_written(const std::string& file, const ExportCertificate& proof, Console& console) {
+  console.say("wrote " + file + " (" + proof.format + "), read back and compared");
+  for (const std::string& note : proof.notes) console.say("  note: " + note);
+  console.emit(dump({{"phase", "written"},
+                     {"file", file},
+                     {"format", proof.format},
+                     {"nodes", proof.read_back.nodes},
+                     {"worst_difference", proof.worst_difference},
+                     {"notes", proof.notes}}));
 }
 
 template <int D>

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/cli_console.h"
+#include "core/io/export_certificate.h"
 #include "core/io/medit.h"
 #include "core/mesh/check.h"
 #include "core/metric/metric.h"
@@ -36,6 +38,9 @@ Result<void> check_output_name(const std::string& output, int dimension);
 template <int D>
 Result<void> write_any(const std::string& output, SimplexMesh<D>&& mesh, MetricField<D>&& metric,
                        const Progress& progress = {});
+
+/// That a file was written, and the notes of its certificate.
+void tell_written(const std::string& file, const ExportCertificate& proof, Console& console);
 
 /// The findings of a check, without those about the metric where there is none.
 Json report_json(const CheckReport& report, bool with_metric);

@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
                                  },
                                  [&](const AdaptCommand& c) { return run_adapt(c, console); },
                                  [&](const GenerateCommand& c) { return run_generate(c, console); },
+                                 [&](const ExportCommand& c) { return run_export(c, console); },
                                  [&](const CheckCommand& c) { return run_check(c, console); },
                                  [&](const InfoCommand& c) { return run_info(c, console); },
                                  [&](const SampleCommand& c) { return run_sample(c, console); },

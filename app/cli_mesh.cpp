@@ -274,8 +274,7 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
     Result<ExportCertificate> proof =
         export_mesh(output, *outcome->state, study, context.inputs, closing);
     if (!proof) return console.fail(proof.error());
-    console.say("wrote " + output + " (" + proof->format + "), read back and compared");
-    console.emit(dump({{"phase", "written"}, {"file", output}, {"format", proof->format}}));
+    tell_written(output, *proof, console);
     context.exports.push_back(std::move(*proof));
   }
   Result<Report> report = build_report(study, *outcome, context, closing);
@@ -350,8 +349,7 @@ int run_generate(const GenerateCommand& c, Console& console) {
   Result<ExportCertificate> proof =
       export_mesh(c.output, all, Study{}, {}, progress.portion(0.9, 1, "writing"));
   if (!proof) return console.fail(proof.error());
-  console.say("wrote " + c.output + " (" + proof->format + "), read back and compared");
-  console.emit(dump({{"phase", "written"}, {"file", c.output}, {"format", proof->format}}));
+  tell_written(c.output, *proof, console);
   return 0;
 }
 

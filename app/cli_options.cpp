@@ -13,6 +13,14 @@ namespace {
 
 const std::map<std::string, double> kUnits = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"inch", 25.4}};
 
+/// Endings of the formats, with their names.
+std::string format_endings() {
+  std::string text;
+  for (const MeshFormat& format : mesh_formats().all())
+    text += (text.empty() ? "" : ", ") + format.endings.front() + " (" + format.title + ")";
+  return text;
+}
+
 const char* const kFooter = R"(
 Lengths are in mm, angles in radians. Exit status: 0 done, 1 error, 2 usage, 3 bad input,
 4 not converged (the mesh is written), 5 quality below the limit asked, 6 memory limit,
@@ -23,6 +31,7 @@ Examples:
   lamella-cli mesh t.step -n 4 -o t.msh -o t.vtu
   lamella-cli mesh t.step --size-sphere 0,0,0,2,0.3 --forecast
   lamella-cli check t.msh --layers 4
+  lamella-cli export t.msh t.inp
   lamella-cli adapt cube.mesh --metric polar-2 --iterations 5 -o adapted.mesh
   lamella-cli box --dimension 4 --cells 4,4,4,8 --high 1,1,1,2 -o spacetime.mesh
   lamella-cli slice spacetime.mesh --times 0.5,1,1.5 -o at.vtu
@@ -102,7 +111,7 @@ void add_conditioning(CLI::App* a, AdaptCommand& adapt) {
 }
 
 void add_adapt(CLI::App* a, AdaptCommand& adapt) {
-  a->add_option("MESH", adapt.mesh, "Medit .mesh (2D, 3D or 4D), .msh or .vtu")
+  a->add_option("MESH", adapt.mesh, "Medit .mesh (2D, 3D or 4D), or a mesh that export reads")
       ->option_text(" ")
       ->required();
   a->add_option("-o,--output", adapt.output, "File to write; a .mesh gets its metric as .sol")
@@ -232,6 +241,25 @@ void add_case(CLI::App* e, CaseCommand& made) {
   number("--angle", made.angle, "X", "Tilted plate: angle of its normal to the x axis [0.61]");
 }
 
+void add_export(CLI::App* x, ExportCommand& exported) {
+  std::string names;
+  for (const MeshFormat& format : mesh_formats().all())
+    names += (names.empty() ? "" : ", ") + format.name;
+  x->add_option("IN", exported.mesh, "A mesh of tetrahedra in any of the formats but STL")
+      ->option_text(" ")
+      ->required();
+  x->add_option("OUT", exported.output, "File to write: " + format_endings())
+      ->option_text(" ")
+      ->required();
+  x->add_option("--format", exported.format, names + " [by the ending of OUT]")
+      ->option_text("NAME");
+  x->add_option("--unit", exported.unit,
+                "Unit of the lengths in OUT: mm or m; OpenFOAM is always in m [mm]")
+      ->option_text("UNIT")
+      ->check(CLI::IsMember({"mm", "m"}));
+  add_json(x, exported.json);
+}
+
 void add_boundary_layers(CLI::App* m, MeshCommand& mesh) {
   m->add_option("--boundary-layer", mesh.boundary_layers,
                 "Boundary layer of a thickness, mm, with N elements across: THICKNESS,N for all "
@@ -305,7 +333,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->option_text("...")
       ->required();
   m->add_option("-o,--output", mesh.outputs,
-                "File to write: .msh (Gmsh 4.1), .vtu, .mesh (Medit) or .stl; may be repeated")
+                "File to write: " + format_endings() + "; may be repeated")
       ->option_text("FILE")
       ->allow_extra_args(false);
   m->add_flag("--forecast", mesh.forecast,
@@ -379,7 +407,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   GenerateCommand generate;
   CLI::App* g = app.add_subcommand("generate", "Fill a closed surface with tetrahedra");
   g->add_option("SURFACE", generate.surface, "STEP or STL file")->option_text(" ")->required();
-  g->add_option("-o,--output", generate.output, "File to write: .mesh, .msh, .vtu")
+  g->add_option("-o,--output", generate.output, "File to write, as for mesh")
       ->option_text("FILE")
       ->required();
   add_chord(g, generate.chord_tolerance);
@@ -390,9 +418,13 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->option_text("N");
   add_json(g, generate.json);
 
+  ExportCommand exported;
+  CLI::App* x = app.add_subcommand("export", "Write a mesh in another format");
+  add_export(x, exported);
+
   CheckCommand check;
   CLI::App* c = app.add_subcommand("check", "Validity, quality, conformity and layers of a mesh");
-  c->add_option("MESH", check.mesh, "Medit .mesh (2D, 3D or 4D), .msh or .vtu")
+  c->add_option("MESH", check.mesh, "Medit .mesh (2D, 3D or 4D), or a mesh that export reads")
       ->option_text(" ")
       ->required();
   auto* check_sol =
@@ -443,8 +475,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->option_text("X,..")
       ->delimiter(',');
   b->add_option("--high", box.high, "Highest corner [1]")->option_text("X,..")->delimiter(',');
-  b->add_option("-o,--output", box.output,
-                "File to write: .mesh (Medit); in 3D .msh, .vtu or .stl too")
+  b->add_option("-o,--output", box.output, "File to write: .mesh (Medit); in 3D as for mesh")
       ->option_text("FILE")
       ->required();
   add_json(b, box.json);
@@ -459,7 +490,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->required()
       ->delimiter(',');
   l->add_option("-o,--output", slice.output,
-                "OUT.vtu writes OUT_0000.vtu and so on, and OUT.pvd; .msh and .mesh too")
+                "OUT.vtu writes OUT_0000.vtu and so on, and OUT.pvd; other formats as for mesh")
       ->option_text("OUT")
       ->required();
   auto* slice_sol =
@@ -493,6 +524,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
     return adapt;
   }
   if (g->parsed()) return generate;
+  if (x->parsed()) return exported;
   if (c->parsed()) return check;
   if (i->parsed()) return info;
   if (e->parsed()) return made;

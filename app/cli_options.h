@@ -64,6 +64,12 @@ struct GenerateCommand {
   bool json = false;
 };
 
+struct ExportCommand {
+  std::string mesh, output, format;
+  std::string unit = "mm";
+  bool json = false;
+};
+
 struct CheckCommand {
   std::string mesh, sol, metric;
   std::optional<int> layers;
@@ -110,8 +116,9 @@ struct SliceCommand {
   bool json = false;
 };
 
-using Command = std::variant<MeshCommand, AdaptCommand, GenerateCommand, CheckCommand, InfoCommand,
-                             SampleCommand, CaseCommand, BoxCommand, SliceCommand>;
+using Command =
+    std::variant<MeshCommand, AdaptCommand, GenerateCommand, ExportCommand, CheckCommand,
+                 InfoCommand, SampleCommand, CaseCommand, BoxCommand, SliceCommand>;
 
 /// Parses the command line. Help, version and errors of usage are printed here: the exit status is
 /// in `status` then, and nothing is returned.

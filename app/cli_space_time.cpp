@@ -112,9 +112,9 @@ int undo(const std::vector<fs::path>& files, const Error& error, Console& consol
   for (const fs::path& file : files) {
     std::error_code ignored;
     fs::remove(file, ignored);
-    if (file.extension() != ".mesh") continue;
-    for (const char* beside : {".sol", ".json"})
-      fs::remove(fs::path(file).replace_extension(beside), ignored);
+    for (const char* beside : {".sol", ".json"}) fs::remove(file.string() + beside, ignored);
+    if (file.extension() == ".mesh")
+      fs::remove(fs::path(file).replace_extension(".sol"), ignored);
   }
   return console.fail(error);
 }
@@ -124,8 +124,9 @@ int make_slices(const SimplexMesh<D>& mesh, const SliceCommand& c, Console& cons
   if (Result<void> known = check_output_name(c.output, D - 1); !known)
     return console.fail(known.error());
   const fs::path output = c.output;
-  if (output.extension() == ".stl")
-    return console.fail({Code::usage, "STL holds no slices.", "Use .vtu, .msh or .mesh."});
+  if (output.extension() == ".stl" || output.extension() == ".foam")
+    return console.fail({Code::usage, "Slices are neither STL files nor OpenFOAM cases.",
+                         "Use .vtu, .msh or .mesh."});
   const Progress progress = console.progress();
   const Result<MetricField<D>> metric = metric_of<D>(mesh, c.sol, c.metric, nullptr);
   if (!metric) return console.fail(metric.error());

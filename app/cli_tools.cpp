@@ -137,6 +137,15 @@ int run_check(const CheckCommand& c, Console& console) {
       *mesh);
 }
 
+int run_export(const ExportCommand& c, Console& console) {
+  ExportOptions options{c.format, c.unit == "m" ? LengthUnit::m : LengthUnit::mm};
+  const Result<ExportCertificate> proof =
+      convert_mesh(c.mesh, c.output, options, console.progress());
+  if (!proof) return console.fail(proof.error());
+  tell_written(c.output, *proof, console);
+  return 0;
+}
+
 int run_sample(const SampleCommand& c, Console& console) {
   const std::string name = sample_called(c.name);
   const std::string output = c.output.empty() ? name + ".step" : c.output;

@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
   parser.addHelpOption();
   parser.addVersionOption();
   parser.addPositionalArgument(
-      "files", "a study (.lamella), STEP or STL parts, or one mesh (.msh, .vtu, .mesh)",
+      "files", "a study (.lamella), STEP or STL parts, or one mesh (.msh, .vtu, .mesh, ..)",
       "[FILE...]");
   const auto option = [&](const QString& name, const QString& text, const QString& value = {}) {
     QCommandLineOption o(name, text, value);

@@ -1,13 +1,15 @@
 #include "app/services.h"
 
 #include <algorithm>
-#include <cctype>
 
-#include "core/geometry/soup.h"
-#include "core/io/medit.h"
-#include "core/io/msh.h"
-#include "core/io/stl.h"
-#include "core/io_vtk/vtu.h"
+#include "core/io/mesh_file.h"
+#include "core/io_vtk/vtk_formats.h"
+#ifdef LAMELLA_WITH_MED
+#include "core/io_med/med.h"
+#endif
+#ifdef LAMELLA_WITH_CGNS
+#include "core/io_cgns/cgns.h"
+#endif
 #include "core/netgen/netgen_mesher.h"
 #include "core/study/measure.h"
 
@@ -17,97 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string ending_of(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
-/// The whole boundary, bodies side by side.
-ReferenceSurface<3> whole_boundary(const SimplexMesh<3>& mesh) {
-  ReferenceSurface<3> surface;
-  for (const Vec<3>& x : mesh.points) surface.points.push_back(x);
-  for (const auto& f : mesh.facets) surface.facets.push_back({f[0], f[1], f[2]});
-  surface.facet_face.assign(surface.facets.size(), 0);
-  surface.faces.resize(1);
-  return surface;
-}
-
-/// Area and enclosed volume of triangles, as a body and a group without names.
-MeshSummary summary_of(const std::vector<std::array<Vec<3>, 3>>& triangles) {
-  MeshSummary s;
-  double area = 0, volume = 0;
-  for (const auto& t : triangles) {
-    const Vec<3> normal = facet_normal<3>(t);
-    area += 0.5 * normal.norm();
-    volume += t[0].dot(normal) / 6;
-  }
-  s.bodies = {{"", 1, volume}};
-  s.groups = {{"", triangles.size(), area}};
-  return s;
-}
-
-MeshSummary summary_of_boundary(const SimplexMesh<3>& mesh) {
-  std::vector<std::array<Vec<3>, 3>> triangles;
-  for (const auto& f : mesh.facets) triangles.push_back(mesh.corners(f));
-  return summary_of(triangles);
-}
-
-Result<ExportCertificate> export_msh(const fs::path& file, const MeshState& state,
-                                     const MeshFields& fields, const Progress& progress) {
-  if (Result<void> done = write_msh(state.mesh, fields, file, {}, progress); !done)
-    return done.error();
-  Result<MshContent> back = read_msh(file);
-  if (!back) return back.error();
-  return certify(file.filename().string(), "Gmsh MSH 4.1", summarize(state.mesh),
-                 summarize(back->mesh));
-}
-
-Result<ExportCertificate> export_vtu(const fs::path& file, const MeshState& state,
-                                     const MeshFields& fields, const Progress& progress) {
-  if (Result<void> done = write_vtu(state.mesh, fields, file, progress); !done) return done.error();
-  Result<VtuContent> back = read_vtu(file);
-  if (!back) return back.error();
-  return certify(file.filename().string(), "VTK VTU", summarize(state.mesh), summarize(back->mesh));
-}
-
-Result<ExportCertificate> export_medit(const fs::path& file, const MeshState& state,
-                                       const Study& study, const std::vector<InputFile>& inputs,
-                                       const Progress& progress) {
-  if (Result<void> done = write_medit<3>(state.mesh, file, progress); !done) return done.error();
-  std::string format = "Medit";
-  if (!state.metric.empty()) {
-    if (Result<void> done = write_sol<3>(state.metric, fs::path(file).replace_extension(".sol"));
-        !done)
-      return done.error();
-    format = "Medit, metric in .sol, names in .json";
-  }
-  if (Result<void> done =
-          write_sidecar(study, state.mesh, inputs, fs::path(file).replace_extension(".json"));
-      !done)
-    return done.error();
-  Result<SimplexMesh<3>> back = read_medit<3>(file);
-  if (!back) return back.error();
-  return certify(file.filename().string(), format, summarize(state.mesh), summarize(*back), false);
-}
-
-Result<ExportCertificate> export_stl(const fs::path& file, const MeshState& state) {
-  if (Result<void> done = write_stl(whole_boundary(state.mesh), file); !done) return done.error();
-  auto back = read_stl(file);
-  if (!back) return back.error();
-  // Binary STL holds single precision.
-  return certify(file.filename().string(), "STL, boundary only", summary_of_boundary(state.mesh),
-                 summary_of(*back), false, 1e-4);
-}
-
-constexpr const char* kFilling = "filling ";
-
 /// The filling ratio of each body, "filling NAME".
 std::vector<ElementField> filling_fields(const MeshState& state) {
   std::vector<ElementField> fields;
   for (std::size_t b = 0; b < state.mesh.bodies.size(); ++b) {
-    ElementField field{kFilling + state.mesh.bodies[b], {}};
+    ElementField field{std::string(kFillingField) + state.mesh.bodies[b], {}};
     for (std::size_t e = 0; e < state.mesh.elements.size(); ++e)
       field.values.push_back(state.filling->ratio(e, static_cast<std::int32_t>(b)));
     fields.push_back(std::move(field));
@@ -115,14 +31,14 @@ std::vector<ElementField> filling_fields(const MeshState& state) {
   return fields;
 }
 
-/// What `filling_fields` says; null unless every body has its field.
+/// What `filling_fields` says; null unless every body has its field and one element is mixed.
 std::shared_ptr<const Filling> filling_of(const std::vector<ElementField>& fields,
                                           const SimplexMesh<3>& mesh) {
   if (mesh.bodies.empty()) return nullptr;
   std::vector<const ElementField*> of_body;
   for (const std::string& body : mesh.bodies) {
     const auto it = std::find_if(fields.begin(), fields.end(), [&](const ElementField& field) {
-      return field.name == kFilling + body;
+      return field.name == std::string(kFillingField) + body;
     });
     if (it == fields.end()) return nullptr;
     of_body.push_back(&*it);
@@ -135,7 +51,40 @@ std::shared_ptr<const Filling> filling_of(const std::vector<ElementField>& field
         filling->shares.push_back({static_cast<std::int32_t>(b), static_cast<float>(ratio)});
     filling->first.push_back(static_cast<std::uint32_t>(filling->shares.size()));
   }
+  if (filling->mixed_count() == 0) return nullptr;
   return filling;
+}
+
+Result<const MeshFormat*> format_for(const fs::path& file, const ExportOptions& options) {
+  return options.format.empty() ? mesh_formats().of_file(file)
+                                : mesh_formats().called(options.format);
+}
+
+Result<ExportCertificate> write(const fs::path& file, const SimplexMesh<3>& mesh,
+                                const MeshFields& fields, const ExportOptions& options,
+                                const Progress& progress) {
+  const MeshFormat& format = **format_for(file, options);
+  fs::path target = file;
+  if (format.name == "openfoam" && file.extension() != ".foam") {
+    std::error_code ec;
+    fs::create_directories(file, ec);
+    target = file / (fs::weakly_canonical(file, ec).filename().string() + ".foam");
+  }
+  return write_mesh_file(format, mesh, fields, target, options.unit, progress);
+}
+
+Result<MeshContent> read_content(const fs::path& file, const Progress& progress) {
+  std::error_code ec;
+  fs::path source = file;
+  if (fs::is_directory(file / "constant" / "polyMesh", ec))
+    source = file / (fs::weakly_canonical(file, ec).filename().string() + ".foam");
+  const Result<const MeshFormat*> format = mesh_formats().of_file(source);
+  if (!format) {
+    Error error = format.error();
+    error.code = Code::bad_input;
+    return error;
+  }
+  return read_mesh_file(**format, source, progress);
 }
 
 }  // namespace
@@ -173,17 +122,29 @@ std::vector<std::shared_ptr<const VolumeMesher>> meshers_for(MesherChoice choice
   return meshers;
 }
 
-const std::vector<std::string>& export_endings() {
-  static const std::vector<std::string> endings = {".msh", ".vtu", ".mesh", ".stl"};
-  return endings;
+const MeshFormats& mesh_formats() {
+  static const MeshFormats formats = [] {
+    MeshFormats all;
+    all.add(own_formats());
+    all.add(vtk_formats());
+#ifdef LAMELLA_WITH_MED
+    all.add({med_format()});
+#else
+    all.add_missing("med", ".med", "This build knows no MED files: libmedC was not there.");
+#endif
+#ifdef LAMELLA_WITH_CGNS
+    all.add({cgns_format()});
+#else
+    all.add_missing("cgns", ".cgns", "This build knows no CGNS files: libcgns was not there.");
+#endif
+    return all;
+  }();
+  return formats;
 }
 
-Result<void> check_export_name(const fs::path& file) {
-  const auto& endings = export_endings();
-  if (std::find(endings.begin(), endings.end(), ending_of(file)) == endings.end())
-    return Error{Code::usage,
-                 "\"" + file.string() + "\": the ending names no format that can be written.",
-                 "Use .msh (Gmsh), .vtu (VTK), .mesh (Medit) or .stl (boundary)."};
+Result<void> check_export_name(const fs::path& file, const ExportOptions& options) {
+  const Result<const MeshFormat*> format = format_for(file, options);
+  if (!format) return format.error();
   std::error_code ec;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (!fs::is_directory(folder, ec))
@@ -194,54 +155,53 @@ Result<void> check_export_name(const fs::path& file) {
 
 Result<ExportCertificate> export_mesh(const fs::path& file, const MeshState& state,
                                       const Study& study, const std::vector<InputFile>& inputs,
-                                      const Progress& progress) {
-  if (Result<void> known = check_export_name(file); !known) return known.error();
+                                      const Progress& progress, const ExportOptions& options) {
+  if (Result<void> known = check_export_name(file, options); !known) return known.error();
   MeshFields fields;
   if (!state.metric.empty()) fields.metric = &state.metric;
   if (!state.thickness.empty()) fields.thickness = &state.thickness;
   if (!state.layers.empty()) fields.layers = &state.layers;
   if (!state.quality.empty()) fields.quality = &state.quality;
-  const std::string ending = ending_of(file);
-  if (state.filling && ending == ".vtu") fields.of_elements = filling_fields(state);
-  Result<ExportCertificate> proof = ending == ".msh"   ? export_msh(file, state, fields, progress)
-                                    : ending == ".vtu" ? export_vtu(file, state, fields, progress)
-                                    : ending == ".mesh"
-                                        ? export_medit(file, state, study, inputs, progress)
-                                        : export_stl(file, state);
-  if (proof && !proof->agrees)
-    return Error{Code::failed,
-                 "\"" + file.string() + "\" does not read back as written: " + proof->finding,
-                 "Please report this with the part."};
-  return proof;
+  if (state.filling) fields.of_elements = filling_fields(state);
+  fields.provenance = provenance_json(study, state.mesh, inputs);
+  return write(file, state.mesh, fields, options, progress);
+}
+
+Result<ExportCertificate> convert_mesh(const fs::path& from, const fs::path& to,
+                                       const ExportOptions& options, const Progress& progress) {
+  if (Result<void> known = check_export_name(to, options); !known) return known.error();
+  Result<MeshContent> content = read_content(from, progress.portion(0, 0.4));
+  if (!content) {
+    // Whatever keeps an input from being read, it is the input that is bad.
+    Error error = content.error();
+    if (error.code == Code::io) error.code = Code::bad_input;
+    return error;
+  }
+  MeshFields fields;
+  if (!content->metric.empty()) fields.metric = &content->metric;
+  if (!content->thickness.empty()) fields.thickness = &content->thickness;
+  if (!content->layers.empty()) fields.layers = &content->layers;
+  if (!content->quality.empty()) fields.quality = &content->quality;
+  fields.of_elements = std::move(content->of_elements);
+  fields.provenance = std::move(content->provenance);
+  if (fields.provenance.empty()) {
+    std::vector<InputFile> inputs;
+    if (Result<InputFile> input = describe_input(from); input) inputs.push_back(std::move(*input));
+    fields.provenance = provenance_json(Study{}, content->mesh, inputs);
+  }
+  return write(to, content->mesh, fields, options, progress.portion(0.4, 1));
 }
 
 Result<MeshState> read_mesh(const fs::path& file, const Progress& progress) {
+  Result<MeshContent> content = read_content(file, progress);
+  if (!content) return content.error();
   MeshState state;
-  const std::string ending = ending_of(file);
-  if (ending == ".msh") {
-    Result<MshContent> content = read_msh(file);
-    if (!content) return content.error();
-    state.mesh = std::move(content->mesh);
-    state.metric = std::move(content->metric);
-    state.thickness = std::move(content->thickness);
-  } else if (ending == ".vtu") {
-    Result<VtuContent> content = read_vtu(file);
-    if (!content) return content.error();
-    state.mesh = std::move(content->mesh);
-    state.metric = std::move(content->metric);
-    state.thickness = std::move(content->thickness);
-    state.layers = std::move(content->layers);
-    state.quality = std::move(content->quality);
-    state.filling = filling_of(content->of_elements, state.mesh);
-  } else if (ending == ".mesh") {
-    Result<SimplexMesh<3>> mesh = read_medit<3>(file, progress);
-    if (!mesh) return mesh.error();
-    state.mesh = std::move(*mesh);
-  } else {
-    return Error{Code::bad_input,
-                 "\"" + file.string() + "\": the ending names no mesh that can be read.",
-                 "Give a .msh (Gmsh 4.1), .vtu (VTK) or .mesh (Medit) file."};
-  }
+  state.filling = filling_of(content->of_elements, content->mesh);
+  state.mesh = std::move(content->mesh);
+  state.metric = std::move(content->metric);
+  state.thickness = std::move(content->thickness);
+  state.layers = std::move(content->layers);
+  state.quality = std::move(content->quality);
   return state;
 }
 

@@ -9,6 +9,7 @@
 #include "core/base/result.h"
 #include "core/cad/load_parts.h"
 #include "core/io/export_certificate.h"
+#include "core/io/mesh_format.h"
 #include "core/optimize/generate.h"
 #include "core/study/report.h"
 #include "core/study/run.h"
@@ -33,20 +34,35 @@ enum class MesherChoice {
 std::vector<std::shared_ptr<const VolumeMesher>> meshers_for(MesherChoice choice,
                                                              std::uint64_t seed = 1);
 
-/// Endings of the formats `export_mesh` knows: .msh .vtu .mesh .stl.
-const std::vector<std::string>& export_endings();
-/// Error: usage, naming the endings, when the file's ending is none of them.
-Result<void> check_export_name(const std::filesystem::path& file);
+/// All formats of this build, those whose library is missing with their reason.
+const MeshFormats& mesh_formats();
 
-/// Writes the mesh in the format of the file's ending, reads it again and compares. Medit and STL
-/// carry less than the others: the metric goes to a .sol file beside a .mesh, the names to a .json.
-/// Errors: usage (ending), io, cancelled; failed when the file reads back otherwise.
+/// How a file is to be written.
+struct ExportOptions {
+  std::string format{};  ///< by its name; empty: by the ending of the file
+  LengthUnit unit = LengthUnit::mm;
+};
+
+/// Error: usage when the file's ending (or the format asked) names none, or the folder is missing.
+Result<void> check_export_name(const std::filesystem::path& file,
+                               const ExportOptions& options = {});
+
+/// Writes the mesh, reads it again and compares (core/io/mesh_file.h). An OpenFOAM case without the
+/// ending .foam is a folder, which is made. Errors: usage (ending), io, cancelled; failed when the
+/// file reads back otherwise.
 Result<ExportCertificate> export_mesh(const std::filesystem::path& file, const MeshState& state,
                                       const Study& study, const std::vector<InputFile>& inputs = {},
-                                      const Progress& progress = {});
+                                      const Progress& progress = {},
+                                      const ExportOptions& options = {});
 
-/// A mesh of tetrahedra (.msh, .vtu, .mesh) with the fields its file has; the others are empty.
-/// Errors: io, bad_input.
+/// Reads a mesh and writes it as another file, with all its fields and what is known of where it
+/// comes from. Errors: those of read_mesh and export_mesh.
+Result<ExportCertificate> convert_mesh(const std::filesystem::path& from,
+                                       const std::filesystem::path& to,
+                                       const ExportOptions& options = {},
+                                       const Progress& progress = {});
+
+/// A mesh of tetrahedra with the fields its file has; the others are empty. Errors: io, bad_input.
 Result<MeshState> read_mesh(const std::filesystem::path& file, const Progress& progress = {});
 
 }  // namespace lamella

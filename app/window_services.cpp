@@ -12,14 +12,14 @@ ui::Services window_services(const std::filesystem::path& sample_folder) {
   services.meshers = [](std::uint64_t seed) { return meshers_for(MesherChoice::automatic, seed); };
   services.run = run;
   services.forecast = forecast_from;
+  services.formats = mesh_formats();
   services.export_mesh = [](const std::filesystem::path& file, const MeshState& state,
-                            const Study& study) -> Result<void> {
+                            const Study& study) {
     std::vector<InputFile> inputs;
     for (const StudyInput& input : study.inputs)
       if (Result<InputFile> described = describe_input(input.file); described)
         inputs.push_back(*described);
-    const Result<ExportCertificate> written = export_mesh(file, state, study, inputs);
-    return written ? Result<void>() : Result<void>(written.error());
+    return export_mesh(file, state, study, inputs);
   };
   services.sample_part =
       [folder = sample_folder](const std::string& name) -> Result<std::filesystem::path> {

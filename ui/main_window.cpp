@@ -51,9 +51,18 @@ bool is_study(const QString& file) {
   return suffix == "lamella" || suffix == "json";
 }
 
-bool is_mesh(const QString& file) {
-  const QString suffix = QFileInfo(file).suffix().toLower();
-  return suffix == "mesh" || suffix == "msh" || suffix == "vtu";
+bool is_mesh(const QString& file, const MeshFormats& formats) {
+  const Result<const MeshFormat*> format = formats.of_file(file.toStdString());
+  return format && (*format)->read;
+}
+
+/// "*.msh *.vtu ..": what can be read as a mesh.
+QString mesh_patterns(const MeshFormats& formats) {
+  QStringList patterns;
+  for (const MeshFormat& format : formats.all())
+    for (const std::string& ending : format.endings)
+      if (format.read) patterns << "*" + QString::fromStdString(ending);
+  return patterns.join(' ');
 }
 
 QStringList local_files(const QMimeData* data) {
@@ -277,8 +286,11 @@ void MainWindow::connect_session() {
     statusBar()->showMessage(tr("Saved %1").arg(file), 4000);
   });
   connect(forecaster_, &Forecaster::changed, this, &MainWindow::update_status);
-  connect(session_, &Session::exported, this, [this](const QString& file) {
-    banner_->show_message(Banner::Kind::done, tr("Mesh written"), file);
+  connect(session_, &Session::exported, this, [this](const QString& file, const QString& notes) {
+    if (notes.isEmpty())
+      banner_->show_message(Banner::Kind::done, tr("Mesh written"), file);
+    else
+      banner_->show_message(Banner::Kind::info, tr("Mesh written: %1").arg(file), notes);
   });
   connect(session_, &Session::unit_assumed, this, [this](const QString& file, const QString& size) {
     const auto again = [this, file](double unit) {
@@ -469,7 +481,7 @@ void MainWindow::open_files(const QStringList& files, bool add) {
     session_->open_study(std::filesystem::absolute(files.front().toStdString()));
     return;
   }
-  if (is_mesh(files.front())) {
+  if (is_mesh(files.front(), session_->services().formats)) {
     session_->open_mesh(files.front().toStdString());
     return;
   }
@@ -483,8 +495,9 @@ void MainWindow::ask_open(bool add) {
       QFileDialog::getOpenFileNames(this, add ? tr("Add bodies") : tr("Open"), folder_,
                                     add ? tr("Parts (*.step *.stp *.stl *.STEP *.STP *.STL)")
                                         : tr("Studies and parts (*.lamella *.json *.step *.stp "
-                                             "*.stl *.STEP *.STP *.STL);;Meshes (*.msh *.vtu "
-                                             "*.mesh);;All files (*)"));
+                                             "*.stl *.STEP *.STP *.STL);;Meshes (%1);;All "
+                                             "files (*)")
+                                              .arg(mesh_patterns(session_->services().formats)));
   open_files(files, add);
 }
 
@@ -560,18 +573,22 @@ void MainWindow::start_run() {
 
 void MainWindow::ask_export() {
   const QString name = QString::fromStdString(session_->study().name) + ".msh";
-  QString filter;
-  QString file = QFileDialog::getSaveFileName(
-      this, tr("Export mesh"), folder_.isEmpty() ? name : folder_ + "/" + name,
-      tr("Gmsh 4.1, with named groups (*.msh);;VTK, with body ids and metric (*.vtu);;"
-         "Medit, with metric (*.mesh)"),
-      &filter);
+  QStringList kinds;
+  for (const MeshFormat& format : session_->services().formats.all()) {
+    QStringList patterns;
+    for (const std::string& ending : format.endings)
+      patterns << "*" + QString::fromStdString(ending);
+    kinds << QString("%1 (%2)").arg(QString::fromStdString(format.title), patterns.join(' '));
+  }
+  QString kind;
+  QString file = QFileDialog::getSaveFileName(this, tr("Export mesh"),
+                                              folder_.isEmpty() ? name : folder_ + "/" + name,
+                                              kinds.join(";;"), &kind);
   if (file.isEmpty()) return;
   // A name without an ending gets the one of the chosen kind.
-  const QString suffix = filter.contains("vtu")      ? "vtu"
-                         : filter.contains("*.mesh") ? "mesh"
-                                                     : "msh";
-  if (QFileInfo(file).suffix().isEmpty()) file += "." + suffix;
+  if (const auto chosen = kinds.indexOf(kind); chosen >= 0 && QFileInfo(file).suffix().isEmpty())
+    file += QString::fromStdString(
+        session_->services().formats.all()[std::size_t(chosen)].endings.front());
   banner_->hide();
   session_->export_mesh(file.toStdString());
 }

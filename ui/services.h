@@ -10,6 +10,8 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/cad/load_parts.h"
+#include "core/io/export_certificate.h"
+#include "core/io/mesh_format.h"
 #include "core/optimize/generate.h"
 #include "core/study/forecast.h"
 #include "core/study/run.h"
@@ -34,13 +36,16 @@ struct Services {
   std::function<Result<std::vector<BodyForecast>>(const std::vector<FirstMesh>&, const Study&,
                                                   const std::vector<Part>&, const Progress&)>
       forecast;
-  /// Writes a mesh; the format follows the extension (.msh, .vtu, .mesh).
-  std::function<Result<void>(const std::filesystem::path&, const MeshState&, const Study&)>
+  /// Of meshes, as the dialogs offer them.
+  MeshFormats formats;
+  /// Writes a mesh; the format follows the ending.
+  std::function<Result<ExportCertificate>(const std::filesystem::path&, const MeshState&,
+                                          const Study&)>
       export_mesh;
   /// Writes a part made by code and names the file: plate, ribbed_tray, curved_shell, t_junction
   /// or twisted_tube.
   std::function<Result<std::filesystem::path>(const std::string& name)> sample_part;
-  /// A volume mesh to look at (.msh, .vtu, .mesh); fields the file has not are left empty.
+  /// A volume mesh to look at; fields the file has not are left empty.
   std::function<Result<MeshState>(const std::filesystem::path&)> read_mesh;
 };
 

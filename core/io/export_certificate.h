@@ -32,6 +32,7 @@ struct ExportCertificate {
   double worst_difference = 0;  ///< largest relative difference of an area or a volume
   std::string finding;          ///< what differs; empty when it agrees
   MeshSummary read_back;
+  std::vector<std::string> notes{};  ///< what the user should know before a solver reads the file
 };
 
 /// Compares counts, names, areas and volumes, these to 1e-9 relative. `names` false leaves the

@@ -128,8 +128,10 @@ void fill(vtkUnstructuredGrid* grid, const SimplexMesh<3>& mesh, const MeshField
 
   add_strings(grid->GetFieldData(), "body_names", mesh.bodies);
   add_strings(grid->GetFieldData(), "group_names", mesh.groups);
-  add_strings(grid->GetFieldData(), "unit", {"mm"});
+  add_strings(grid->GetFieldData(), "unit", {unit_name(fields.unit)});
   add_strings(grid->GetFieldData(), "generator", {"Lamella " + version()});
+  if (!fields.provenance.empty())
+    add_strings(grid->GetFieldData(), "provenance", {fields.provenance});
 }
 
 std::vector<std::string> strings_of(vtkFieldData* data, const char* name) {
@@ -157,7 +159,7 @@ std::int32_t id_of(vtkDataArray* array, vtkIdType cell, std::vector<std::string>
   return id;
 }
 
-void take(vtkUnstructuredGrid* grid, VtuContent& out) {
+void take(vtkUnstructuredGrid* grid, MeshContent& out) {
   SimplexMesh<3>& mesh = out.mesh;
   for (vtkIdType v = 0; v < grid->GetNumberOfPoints(); ++v) {
     Vec<3> x;
@@ -166,6 +168,10 @@ void take(vtkUnstructuredGrid* grid, VtuContent& out) {
   }
   mesh.bodies = strings_of(grid->GetFieldData(), "body_names");
   mesh.groups = strings_of(grid->GetFieldData(), "group_names");
+  const std::vector<std::string> unit = strings_of(grid->GetFieldData(), "unit");
+  if (!unit.empty() && unit[0] == "m") out.unit = LengthUnit::m;
+  if (const auto texts = strings_of(grid->GetFieldData(), "provenance"); !texts.empty())
+    out.provenance = texts[0];
   vtkDataArray* body = grid->GetCellData()->GetArray("body");
   vtkDataArray* group = grid->GetCellData()->GetArray("group");
   vtkDataArray* face = grid->GetCellData()->GetArray("face");
@@ -246,6 +252,7 @@ Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
   writer->SetInputData(grid);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
+  writer->SetCompressionLevel(1);  // three times as fast as 5, for a few percent
   vtkNew<vtkCallbackCommand> watch;
   watch->SetClientData(const_cast<Progress*>(&progress));
   watch->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
@@ -263,7 +270,7 @@ Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
   return target->commit();
 }
 
-Result<VtuContent> read_vtu(const std::filesystem::path& file) {
+Result<MeshContent> read_vtu(const std::filesystem::path& file) {
   // VTK's parser takes anything it is given; what is no VTU file at all is better told before.
   Result<std::string> bytes = read_file(file);
   if (!bytes) return bytes.error();
@@ -283,7 +290,7 @@ Result<VtuContent> read_vtu(const std::filesystem::path& file) {
   vtkUnstructuredGrid* grid = reader->GetOutput();
   if (reader->GetErrorCode() != 0 || !grid || !consistent(grid))
     return refuse("the file is damaged", "Write or copy it again.");
-  VtuContent content;
+  MeshContent content;
   take(grid, content);
   if (content.mesh.elements.empty())
     return refuse("it holds no tetrahedra", "Only volume meshes of tetrahedra can be used.");

@@ -14,22 +14,14 @@ namespace lamella {
 /// Cell arrays, Int32: `body` (-1 on triangles), `group` and `face` (-1 on tetrahedra); `quality`
 /// and further fields of elements are NaN on triangles. Point arrays: `metric` (active tensors, XX
 /// YY ZZ XY YZ XZ, mm^-2), `thickness` (mm), `layers`. Field arrays of strings: `body_names`,
-/// `group_names`, `unit`, `generator`. Errors: io; cancelled. Nothing is left behind on failure.
+/// `group_names`, `unit`, `generator`, `provenance`. Errors: io; cancelled. Nothing is left behind
+/// on failure.
 Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
                        const std::filesystem::path& file, const Progress& progress = {});
-
-struct VtuContent {
-  SimplexMesh<3> mesh;
-  MetricField<3> metric;                  ///< [node]; each field is empty when the file has none
-  std::vector<double> thickness;          ///< [node]
-  std::vector<double> layers;             ///< [node]
-  std::vector<double> quality;            ///< [element]
-  std::vector<ElementField> of_elements;  ///< further numbers of elements
-};
 
 /// A grid as written by `write_vtu`; of other writers' grids the tetrahedra and triangles.
 /// Errors: io (missing, unreadable); bad_input (not a VTU file, no tetrahedra, arrays of wrong
 /// size).
-Result<VtuContent> read_vtu(const std::filesystem::path& file);
+Result<MeshContent> read_vtu(const std::filesystem::path& file);
 
 }  // namespace lamella

@@ -185,7 +185,8 @@ std::string report_json(const Report& report) {
                                {"format", c.format},
                                {"agrees", c.agrees},
                                {"worst_difference", c.worst_difference},
-                               {"finding", c.finding}});
+                               {"finding", c.finding},
+                               {"notes", c.notes}});
   return dump(json, 2) + "\n";
 }
 
@@ -195,16 +196,14 @@ Result<void> write_report(const Report& report, const std::filesystem::path& ste
   return write_file(stem.string() + ".html", report_html(report));
 }
 
-Result<void> write_sidecar(const Study& study, const SimplexMesh<3>& mesh,
-                           const std::vector<InputFile>& inputs,
-                           const std::filesystem::path& file) {
+std::string provenance_json(const Study& study, const SimplexMesh<3>& mesh,
+                            const std::vector<InputFile>& inputs) {
   Json json;
   json["program"] = "Lamella " + version();
-  json["unit"] = "mm";
   json["study"] = study.name;
   json["bodies"] = Json::array();
   for (std::size_t b = 0; b < mesh.bodies.size(); ++b) {
-    Json body = {{"reference", b + 1}, {"name", mesh.bodies[b]}};
+    Json body = {{"name", mesh.bodies[b]}};
     const BodySettings settings = settings_of(study, mesh.bodies[b]);
     body["layers"] = settings.layers;
     body["alpha"] = settings.alpha;
@@ -216,13 +215,13 @@ Result<void> write_sidecar(const Study& study, const SimplexMesh<3>& mesh,
   }
   json["groups"] = Json::array();
   for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
-    Json group = {{"reference", g + 1}, {"name", mesh.groups[g]}};
+    Json group = {{"name", mesh.groups[g]}};
     for (const BoundaryGroup& asked : study.groups)
       if (asked.name == mesh.groups[g]) group["kind"] = group_kind_name(asked.kind);
     json["groups"].push_back(std::move(group));
   }
   json["inputs"] = inputs_json(inputs);
-  return write_file(file, dump(json, 2) + "\n");
+  return dump(json, -1);
 }
 
 }  // namespace lamella

@@ -53,10 +53,10 @@ std::string report_html(const Report& report);
 /// Writes STEM.json and STEM.html. Errors: io.
 Result<void> write_report(const Report& report, const std::filesystem::path& stem);
 
-/// Sidecar of a mesh file for what its format has no place for: unit, version, names of bodies and
-/// groups with their references (from 1), what was asked of each body, hashes of the inputs.
-Result<void> write_sidecar(const Study& study, const SimplexMesh<3>& mesh,
-                           const std::vector<InputFile>& inputs, const std::filesystem::path& file);
+/// Where a mesh comes from, as one JSON object for the files it is written to: version, what was
+/// asked of each body, kinds of the groups, hashes of the inputs.
+std::string provenance_json(const Study& study, const SimplexMesh<3>& mesh,
+                            const std::vector<InputFile>& inputs);
 
 /// One line of JSON, without line end.
 std::string record_json(const IterationRecord& record);

@@ -296,6 +296,9 @@ std::string files(const Report& r) {
     html += "</table>";
   }
   std::string notes;
+  for (const ExportCertificate& c : r.context.exports)
+    for (const std::string& note : c.notes)
+      notes += "<li>" + escaped(c.file) + ": " + escaped(note) + "</li>";
   for (const BodyOutcome& b : r.outcome.bodies)
     for (const std::string& note : b.notes)
       notes += "<li>" + escaped(b.name + ": " + note) + "</li>";

@@ -205,10 +205,11 @@ TEST_F(Cli, APlateGetsItsLayersAndEveryFileAgrees) {
   EXPECT_NEAR(done["bodies"][0]["mesh_volume"], volume, 5e-3 * volume);
   EXPECT_GE(done["bodies"][0]["layers_mean"], 4);
   EXPECT_LE(done["bodies"][0]["boundary_distance"], done["bodies"][0]["chord_tolerance"]);
-  EXPECT_EQ(folder.names(), (Names{"p.json", "p.mesh", "p.msh", "p.report.html", "p.report.json",
-                                   "p.sol", "p.vtu", "plate.step", "plate.study.json"}));
+  EXPECT_EQ(folder.names(),
+            (Names{"p.mesh", "p.mesh.json", "p.msh", "p.msh.json", "p.report.html", "p.report.json",
+                   "p.sol", "p.vtu", "plate.step", "plate.study.json"}));
 
-  const Result<MshContent> back = read_msh(folder / "p.msh");
+  const Result<MeshContent> back = read_msh(folder / "p.msh");
   ASSERT_TRUE(back.ok());
   EXPECT_TRUE(validate<3>(back->mesh).ok());
   EXPECT_EQ(back->mesh.groups, Names{"walls"});
@@ -255,7 +256,7 @@ TEST_F(Cli, GroupsGoIntoEveryFileWithTheirNamesAndAreas) {
     for (const NamedMeasure& group : summarize(mesh).groups) found[group.name] = group.measure;
     return found;
   };
-  const Result<MshContent> msh = read_msh(folder / "g.msh");
+  const Result<MeshContent> msh = read_msh(folder / "g.msh");
   ASSERT_TRUE(msh) << msh.error().message;
   auto area = areas(msh->mesh);
   ASSERT_EQ(area.size(), 3u);
@@ -266,7 +267,7 @@ TEST_F(Cli, GroupsGoIntoEveryFileWithTheirNamesAndAreas) {
   const json report = json::parse(read_file(folder / "g.report.json").value());
   ASSERT_EQ(report["exports"].size(), 3u);
   // Medit has references only: the names are beside it, with what they are to a simulation.
-  const json sidecar = json::parse(read_file(folder / "g.json").value());
+  const json sidecar = json::parse(read_file(folder / "g.mesh.json").value());
   std::map<std::string, json> groups;
   for (const json& group : sidecar["groups"]) groups[group["name"]] = group;
   EXPECT_EQ(groups["gate"]["kind"], "gate");
@@ -628,8 +629,8 @@ TEST_F(Cli, CtrlCWritesTheBestMeshAndNothingElse) {
   EXPECT_TRUE(adapted);
   ::kill(pid, SIGINT);
   EXPECT_EQ(finish(pipe), 130) << err;
-  EXPECT_EQ(folder.names(),
-            (Names{"t.msh", "t.report.html", "t.report.json", "t.step", "t.study.json"}));
+  EXPECT_EQ(folder.names(), (Names{"t.msh", "t.msh.json", "t.report.html", "t.report.json",
+                                   "t.step", "t.study.json"}));
   EXPECT_TRUE(read_msh(folder / "t.msh").ok());
 }
 

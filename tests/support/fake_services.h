@@ -94,12 +94,15 @@ struct FakeServices {
       outcome.bodies.push_back(body);
       return outcome;
     };
+    services.formats.add(own_formats());
     services.export_mesh = [this](const std::filesystem::path& file, const MeshState&,
-                                  const Study&) -> Result<void> {
+                                  const Study&) -> Result<ExportCertificate> {
       if (!std::filesystem::is_directory(file.parent_path()))
         return Error{Code::io, "Cannot write " + file.string() + ".", "Choose another folder."};
       ++exports;
-      return {};
+      ExportCertificate proof;
+      proof.notes = {"a note of the export"};
+      return proof;
     };
     services.sample_part = [](const std::string& name) -> Result<std::filesystem::path> {
       return Error{Code::usage, "No sample part is called " + name + ".", ""};

@@ -433,8 +433,10 @@ TEST_F(MainWindowTest, ExportTellsSuccessAndFailure) {
   QSignalSpy exported(&session(), &Session::exported);
   session().export_mesh(folder_ / "box.msh");
   ASSERT_TRUE(wait_idle());
-  EXPECT_EQ(exported.count(), 1);
+  ASSERT_EQ(exported.count(), 1);
   EXPECT_EQ(fake_.exports, 1);
+  EXPECT_EQ(exported.at(0).at(1).toString(), "a note of the export");
+  EXPECT_TRUE(window_.banner().message().contains("box.msh"));
   session().export_mesh(folder_.path() / "no_such_folder" / "box.msh");
   ASSERT_TRUE(wait_idle());
   EXPECT_EQ(exported.count(), 1);

@@ -314,7 +314,7 @@ void Session::save(const std::filesystem::path& file) {
   }
   begin(Activity::exporting,
         [this, state, file, mesh, study = study_](const Progress&) -> Worker::Done {
-          Result<void> written = services_.export_mesh(mesh, *state, *study);
+          Result<ExportCertificate> written = services_.export_mesh(mesh, *state, *study);
           return [this, written = std::move(written), file] {
             set_activity(Activity::idle);
             if (!written) return report(written.error());
@@ -602,12 +602,15 @@ void Session::export_mesh(const std::filesystem::path& file) {
   if (activity_ != Activity::idle || !state) return;
   Q_EMIT logged(tr("Exporting %1").arg(text(file.string())));
   begin(Activity::exporting, [this, state, file, study = study_](const Progress&) -> Worker::Done {
-    Result<void> written = services_.export_mesh(file, *state, *study);
+    Result<ExportCertificate> written = services_.export_mesh(file, *state, *study);
     return [this, written = std::move(written), file] {
       set_activity(Activity::idle);
       if (!written) return report(written.error());
       Q_EMIT logged(tr("Wrote %1").arg(text(file.string())));
-      Q_EMIT exported(text(file.string()));
+      QStringList notes;
+      for (const std::string& note : written->notes) notes << text(note);
+      for (const QString& note : notes) Q_EMIT logged(note);
+      Q_EMIT exported(text(file.string()), notes.join('\n'));
     };
   });
 }

@@ -159,7 +159,8 @@ class Session : public QObject {
   void progressed(double fraction, const QString& phase, double seconds_left);
   void run_finished();
   void overlaps_changed();
-  void exported(const QString& file);
+  /// `notes` are what a solver will complain about, one a line; mostly empty.
+  void exported(const QString& file, const QString& notes);
   void saved(const QString& file);
   /// A study file is open, with all its parts.
   void study_opened(const QString& file);

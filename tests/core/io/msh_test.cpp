@@ -38,7 +38,7 @@ class Msh : public testing::TestWithParam<bool> {
 
 TEST_P(Msh, ReadsBackEverythingBitForBit) {
   write();
-  const Result<MshContent> back = read_msh(folder / "m.msh");
+  const Result<MeshContent> back = read_msh(folder / "m.msh");
   ASSERT_TRUE(back.ok()) << back.error().message;
   EXPECT_EQ(back->mesh.points, mesh.points);
   EXPECT_EQ(back->mesh.bodies, mesh.bodies);
@@ -58,7 +58,7 @@ TEST_P(Msh, EveryTruncationIsRefused) {
   for (const double share : {0.0, 0.001, 0.02, 0.3, 0.6, 0.9, 0.999}) {
     const auto length = static_cast<std::size_t>(share * static_cast<double>(bytes.size()));
     ASSERT_TRUE(write_file(folder / "cut.msh", bytes.substr(0, length)).ok());
-    const Result<MshContent> cut = read_msh(folder / "cut.msh");
+    const Result<MeshContent> cut = read_msh(folder / "cut.msh");
     ASSERT_FALSE(cut.ok()) << share;
     EXPECT_EQ(cut.error().code, Code::bad_input);
     EXPECT_NE(cut.error().message.find("cut.msh"), std::string::npos);
@@ -113,10 +113,13 @@ INSTANTIATE_TEST_SUITE_P(TextAndBinary, Msh, testing::Bool(),
 
 TEST(MshRead, OtherVersionsAreRefusedWithAHint) {
   const test::TemporaryFolder folder;
-  ASSERT_TRUE(write_file(folder / "old.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n").ok());
-  const Result<MshContent> old = read_msh(folder / "old.msh");
-  ASSERT_FALSE(old.ok());
-  EXPECT_NE(old.error().hint.find("msh41"), std::string::npos);
+  for (const std::string version : {"1.0 0 8", "2.2 1 8", "3.0 0 8", "4.0 0 8"}) {
+    ASSERT_TRUE(
+        write_file(folder / "old.msh", "$MeshFormat\n" + version + "\n$EndMeshFormat\n").ok());
+    const Result<MeshContent> old = read_msh(folder / "old.msh");
+    ASSERT_FALSE(old.ok());
+    EXPECT_NE(old.error().hint.find("msh41"), std::string::npos) << version;
+  }
 }
 
 TEST(MshRead, NodesNumberedWithGapsAreRenumberedInOrder) {
@@ -127,7 +130,7 @@ TEST(MshRead, NodesNumberedWithGapsAreRenumberedInOrder) {
                          "0 0 1\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n"
                          "$Elements\n1 1 1 1\n3 9 4 1\n1 7 10 20 40\n$EndElements\n")
                   .ok());
-  const Result<MshContent> back = read_msh(folder / "gaps.msh");
+  const Result<MeshContent> back = read_msh(folder / "gaps.msh");
   ASSERT_TRUE(back.ok()) << back.error().message;
   EXPECT_EQ(back->mesh.elements.at(0), (SimplexMesh<3>::Element{1, 2, 3, 4}));
   EXPECT_DOUBLE_EQ(signed_measure<3>(back->mesh.corners(back->mesh.elements[0])), 1.0 / 6);

@@ -42,7 +42,7 @@ class Vtu : public testing::Test {
 TEST_F(Vtu, ReadsBackMeshNamesAndFields) {
   ASSERT_TRUE(write().ok());
   EXPECT_EQ(folder.names(), std::vector<std::string>{"m.vtu"});
-  const Result<VtuContent> back = read_vtu(folder / "m.vtu");
+  const Result<MeshContent> back = read_vtu(folder / "m.vtu");
   ASSERT_TRUE(back.ok()) << back.error().message;
   const ExportCertificate proof =
       certify("m.vtu", "VTK VTU", summarize(mesh), summarize(back->mesh));
@@ -75,7 +75,7 @@ TEST_F(Vtu, DamagedFilesAreRefused) {
   for (const std::string& bad : {std::string(), std::string("garbage"), bytes.substr(0, 600),
                                  bytes.substr(0, bytes.size() / 2)}) {
     ASSERT_TRUE(write_file(folder / "bad.vtu", bad).ok());
-    const Result<VtuContent> result = read_vtu(folder / "bad.vtu");
+    const Result<MeshContent> result = read_vtu(folder / "bad.vtu");
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, Code::bad_input);
   }

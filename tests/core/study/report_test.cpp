@@ -118,15 +118,11 @@ TEST(Report, FilesAppearTogetherBesideTheMesh) {
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"tray.report.html", "tray.report.json"}));
 }
 
-TEST(Sidecar, NamesBodiesGroupsAndInputs) {
-  const test::TemporaryFolder folder;
+TEST(Provenance, NamesBodiesGroupsAndInputs) {
   Study study;
   const Outcome outcome = some_outcome();
-  ASSERT_TRUE(write_sidecar(study, outcome.state->mesh, {{"a.stl", 3, std::string(64, 'b')}},
-                            folder / "m.json")
-                  .ok());
-  const auto json = nlohmann::json::parse(read_file(folder / "m.json").value());
-  EXPECT_EQ(json["unit"], "mm");
+  const auto json = nlohmann::json::parse(
+      provenance_json(study, outcome.state->mesh, {{"a.stl", 3, std::string(64, 'b')}}));
   EXPECT_EQ(json["bodies"][0]["name"], "cover <A&B>");
   EXPECT_EQ(json["bodies"][0]["layers"], 4);
   EXPECT_EQ(json["groups"][1]["name"], "gate");

@@ -1,0 +1,58 @@
+#include <benchmark/benchmark.h>
+
+#include "core/io/mesh_file.h"
+#include "core/io_vtk/vtk_formats.h"
+#include "core/mesh/sample_meshes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace lamella {
+namespace {
+
+/// A million tetrahedra with a metric, written and read in one format.
+struct Case {
+  SimplexMesh<3> mesh = box_mesh<3>({55, 55, 55}, Vec<3>(0, 0, 0), Vec<3>(7.3, 9.1, 11.7));
+  MetricField<3> metric = MetricField<3>(mesh.points.size(), 2.123456789 * Metric<3>::Identity());
+  MeshFields fields;
+  MeshFormats formats;
+  test::TemporaryFolder folder;
+
+  Case() {
+    fields.metric = &metric;
+    formats.add(own_formats());
+    formats.add(vtk_formats());
+  }
+};
+
+void write_million(benchmark::State& state, const char* name) {
+  const Case made;
+  const MeshFormat& format = **made.formats.called(name);
+  for (auto _ : state)
+    if (!format.write(made.mesh, made.fields, made.folder / ("m" + format.endings[0]), {}))
+      return state.SkipWithError("not written");
+}
+
+void read_million(benchmark::State& state, const char* name) {
+  const Case made;
+  const MeshFormat& format = **made.formats.called(name);
+  const auto file = made.folder / ("m" + format.endings[0]);
+  if (!format.write(made.mesh, made.fields, file, {})) return state.SkipWithError("not written");
+  for (auto _ : state)
+    if (!format.read(file, {})) return state.SkipWithError("not read");
+}
+
+#define LAMELLA_FORMAT(name)                                                                   \
+  BENCHMARK_CAPTURE(write_million, name, #name)->Unit(benchmark::kMillisecond)->UseRealTime(); \
+  BENCHMARK_CAPTURE(read_million, name, #name)->Unit(benchmark::kMillisecond)->UseRealTime()
+LAMELLA_FORMAT(msh);
+LAMELLA_FORMAT(msh22);
+LAMELLA_FORMAT(vtu);
+LAMELLA_FORMAT(medit);
+LAMELLA_FORMAT(abaqus);
+LAMELLA_FORMAT(unv);
+LAMELLA_FORMAT(nastran);
+LAMELLA_FORMAT(openfoam);
+LAMELLA_FORMAT(cimlib);
+LAMELLA_FORMAT(exodus);
+
+}  // namespace
+}  // namespace lamella
