@@ -6,10 +6,14 @@
 namespace lamella {
 namespace {
 
-using flow::State;
+using flow::Pressures;
+using flow::Velocities;
 
 /// Without a fall of the residual by half over so many iterations it stagnates.
 constexpr std::size_t kPatience = 300;
+constexpr int kPasses = 15;
+/// Share of the flow that may be lost.
+constexpr double kBalance = 1e-7;
 
 template <int D>
 class Solver {
@@ -23,7 +27,7 @@ class Solver {
     if (!system) return system.error();
     system_ = std::move(*system);
     auto preconditioner = flow::StokesPreconditioner<D>::build(
-        mesh_, system_, progress.portion(0.15, 0.3, "preparing the flow solver"));
+        mesh_, system_, settings_.smooth_pressure, progress.portion(0.15, 0.3, "preparing the flow solver"));
     if (!preconditioner) return cancelled_error();
     preconditioner_ = std::move(preconditioner);
 
@@ -39,7 +43,7 @@ class Solver {
       pressure[g] = flow_.gates[g].pressure.value_or(0);
       driven = driven || pressure[g] != 0;
     }
-    State<D> x(system_.rows(), Vec<D + 1>::Zero());
+    State x = zero();
     Flow<D> out;
     if (driven)
       if (Result<void> done =
@@ -54,39 +58,47 @@ class Solver {
   }
 
  private:
+  struct State {
+    Velocities<D> v;
+    Pressures p;
+  };
+  State zero() const {
+    return {Velocities<D>(system_.rows(), Vec<D>::Zero()),
+            Pressures(system_.rows(), Vec<1>::Zero())};
+  }
+
   /// Of pressures (over the viscosity) at the openings, and the body force if asked.
-  State<D> right_side(const std::vector<double>& pressure, bool with_force) const {
-    State<D> b = with_force && !system_.force.empty()
-                     ? system_.force
-                     : State<D>(system_.rows(), Vec<D + 1>::Zero());
+  State right_side(const std::vector<double>& pressure, bool with_force) const {
+    State b = zero();
+    if (with_force && !system_.force.empty()) b = {system_.force, system_.bubble_force};
     for (std::size_t o = 0; o < pressure.size(); ++o)
       for (std::size_t k = 0; k < system_.openings[o].rows.size(); ++k)
-        b[system_.openings[o].rows[k]].template head<D>() -=
+        b.v[system_.openings[o].rows[k]] -=
             pressure[o] / flow_.viscosity * system_.openings[o].load[k];
-    flow::constrain<D>(system_, b);
+    flow::constrain<D>(system_, b.v);
     return b;
   }
 
-  double rate(std::size_t opening, const State<D>& x) const {
+  double rate(std::size_t opening, const State& x) const {
     const auto& o = system_.openings[opening];
     double sum = 0;
     for (std::size_t k = 0; k < o.rows.size(); ++k)
-      sum += o.load[k].dot(x[o.rows[k]].template head<D>());
+      sum += o.load[k].dot(x.v[o.rows[k]]);
     return sum;
   }
 
   /// Adds the flows of the gates with a rate, whose pressures follow.
   Result<void> add_rates(const std::vector<std::size_t>& rated, std::vector<double>& pressure,
-                         State<D>& x, std::vector<double>& residuals, const Progress& solving) {
+                         State& x, std::vector<double>& residuals, const Progress& solving) {
     const auto n = static_cast<Eigen::Index>(rated.size());
     const double parts = static_cast<double>(n) + 1;
-    std::vector<State<D>> unit;
+    std::vector<State> unit;
     Eigen::MatrixXd rates(n, n);
     Eigen::VectorXd missing(n);
     for (Eigen::Index k = 0; k < n; ++k) {
       std::vector<double> one(system_.openings.size(), 0);
       one[rated[k]] = flow_.viscosity;
-      unit.emplace_back(system_.rows(), Vec<D + 1>::Zero());
+      unit.push_back(zero());
       const Progress here = solving.portion((k + 1) / parts, (k + 2) / parts);
       if (Result<void> done = solve(right_side(one, false), unit.back(), residuals, here); !done)
         return done.error();
@@ -99,12 +111,22 @@ class Solver {
                    "Name a vent, or give one gate a pressure."};
     for (Eigen::Index k = 0; k < n; ++k) {
       pressure[rated[k]] = found[k] * flow_.viscosity;
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] += found[k] * unit[k][i];
+      for_rows([&](std::size_t i) {
+        x.v[i] += found[k] * unit[k].v[i];
+        x.p[i] += found[k] * unit[k].p[i];
+      });
     }
     return {};
   }
 
-  double dot(const State<D>& a, const State<D>& b) const {
+  template <class Work>
+  void for_rows(Work&& work) const {
+    flow::for_blocks(system_.rows(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) work(i);
+    });
+  }
+  template <class Rows>
+  double dot(const Rows& a, const Rows& b) const {
     return flow::block_sum(a.size(), [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t i = begin; i < end; ++i) sum += a[i].dot(b[i]);
@@ -112,74 +134,85 @@ class Solver {
     });
   }
 
-  /// y = K x within the admissible states.
-  void multiply(const State<D>& x, State<D>& y) const {
-    flow::multiply<D>(system_, x, y);
-    flow::constrain<D>(system_, y);
+  /// What enters also leaves: the residuals of the pressure add up to the sum of all rates.
+  bool balanced(const State& r, const State& x) const {
+    double enters = 0, sum = 0;
+    for (std::size_t o = 0; o < system_.openings.size(); ++o)
+      enters += std::max(0.0, -rate(o, x));
+    for (const Vec<1>& p : r.p) sum += p[0];
+    return std::abs(sum) <= kBalance * enters;
   }
 
-  /// Preconditioned minimal residuals (Paige and Saunders 1975). What rounding leaves between the
-  /// residual of the recurrence and the true one is solved for again.
-  Result<void> solve(const State<D>& b, State<D>& x, std::vector<double>& history,
+  /// Conjugate gradients of Bramble and Pasciak (1988). With the approximate inverses a of A and s
+  /// of the Schur complement, the rows of (5.3) are replaced by those of (a, s B a, -s), which makes
+  /// it positive definite for the product (A - 1/a, 1/s) as long as 1/a is below A; the products
+  /// are found without 1/a and 1/s. What rounding leaves between the residual carried along and
+  /// the true one is solved for again.
+  Result<void> solve(const State& b, State& x, std::vector<double>& history,
                      const Progress& progress) {
-    const std::size_t n = b.size();
-    State<D> r = b, z(n), next(n), before(n), w0(n), w1(n), kz(n);
+    State r = b, z = zero(), az = zero(), d = zero(), kd = zero();
+    Velocities<D> w(system_.rows());
+    Pressures g(system_.rows());
     double first = 0;
+    int grown = 0;
     history.clear();
-    for (int pass = 0; pass < 4; ++pass) {
-      preconditioner_->apply(system_, r, z);
-      double gamma = std::sqrt(std::max(0.0, dot(r, z)));
-      if (pass == 0) first = gamma;
-      if (history.empty()) history.push_back(1);
-      if (!(gamma > settings_.tolerance * first)) return {};
-      for (State<D>* v : {&before, &w0, &w1}) std::fill(v->begin(), v->end(), Vec<D + 1>::Zero());
-      double gamma_before = 1, eta = gamma, s0 = 0, s1 = 0, c0 = 1, c1 = 1;
-      while (std::abs(eta) > 0.5 * settings_.tolerance * first) {
+    for (int pass = 0; pass < kPasses; ++pass) {
+      preconditioner_->velocity(system_, r.v, z.v);
+      double before = 0;
+      for (bool restart = true; true; restart = false) {
         if (progress.cancelled()) return cancelled_error();
+        flow::multiply_velocity<D>(system_, z.v, az.v, az.p);
+        for_rows([&](std::size_t i) { g[i] = az.p[i] - r.p[i]; });
+        preconditioner_->pressure(g, z.p);
+        const double now = dot(az.v, z.v) - dot(r.v, z.v) + dot(g, z.p);
+        if (history.empty()) {
+          first = now;
+          history.push_back(1);
+          if (now == 0) return {};
+        }
+        const double share = std::sqrt(std::abs(now / first));
+        if (!restart) history.push_back(share);
         if (const Result<void> fine = judge(history); !fine) return fine.error();
-        for_rows(n, [&](std::size_t i) { z[i] /= gamma; });
-        multiply(z, kz);
-        const double delta = dot(kz, z);
-        const double p = delta / gamma, q = gamma / gamma_before;
-        for_rows(n, [&](std::size_t i) { next[i] = kz[i] - p * r[i] - q * before[i]; });
-        std::swap(before, r);
-        std::swap(r, next);
-        std::swap(z, kz);  // kz is the direction now, z is free
-        preconditioner_->apply(system_, r, z);
-        const double gamma_next = std::sqrt(std::max(0.0, dot(r, z)));
-        const double a0 = c1 * delta - c0 * s1 * gamma, a1 = std::hypot(a0, gamma_next);
-        const double a2 = s1 * delta + c0 * c1 * gamma, a3 = s0 * gamma;
-        c0 = c1;
-        s0 = s1;
-        c1 = a0 / a1;
-        s1 = gamma_next / a1;
-        const double step = c1 * eta;
-        for_rows(n, [&](std::size_t i) {
-          const Vec<D + 1> w = (kz[i] - a3 * w0[i] - a2 * w1[i]) / a1;
-          w0[i] = w1[i];
-          w1[i] = w;
-          x[i] += step * w;
+        progress.report(std::log(share) / std::log(settings_.tolerance));
+        const bool small = share <= (restart ? 1 : 0.5) * settings_.tolerance;
+        if (small && (balanced(r, x) || share <= 1e-4 * settings_.tolerance)) {
+          if (restart) return {};
+          break;
+        }
+        flow::add_pressure<D>(system_, z.p, az.v, az.p);
+        const double beta = restart ? 0 : now / before;
+        for_rows([&](std::size_t i) {
+          d.v[i] = z.v[i] + beta * d.v[i];
+          d.p[i] = z.p[i] + beta * d.p[i];
+          kd.v[i] = az.v[i] + beta * kd.v[i];
+          kd.p[i] = az.p[i] + beta * kd.p[i];
         });
-        eta = -s1 * eta;
-        gamma_before = gamma;
-        gamma = gamma_next;
-        history.push_back(std::abs(eta) / first);
-        progress.report(std::log(history.back()) / std::log(settings_.tolerance));
-        if (gamma == 0) break;
+        preconditioner_->velocity(system_, kd.v, w);
+        const double curvature = dot(w, kd.v) - dot(kd.v, d.v) - dot(kd.p, d.p);
+        if (!(now > 0 && curvature > 0)) {
+          // 1/a was not below A.
+          if (++grown > 10) return stuck("The flow solver broke down", history);
+          preconditioner_->shrink_velocity();
+          break;
+        }
+        const double step = now / curvature;
+        for_rows([&](std::size_t i) {
+          x.v[i] += step * d.v[i];
+          x.p[i] += step * d.p[i];
+          r.v[i] -= step * kd.v[i];
+          r.p[i] -= step * kd.p[i];
+          z.v[i] -= step * w[i];
+        });
+        before = now;
       }
-      multiply(x, r);
-      for_rows(n, [&](std::size_t i) { r[i] = b[i] - r[i]; });
+      flow::multiply_velocity<D>(system_, x.v, r.v, r.p);
+      flow::add_pressure<D>(system_, x.p, r.v, r.p);
+      for_rows([&](std::size_t i) {
+        r.v[i] = b.v[i] - r.v[i];
+        r.p[i] = b.p[i] - r.p[i];
+      });
     }
-    preconditioner_->apply(system_, r, z);
-    if (std::sqrt(std::max(0.0, dot(r, z))) <= 10 * settings_.tolerance * first) return {};
     return stuck("Rounding keeps the residual of the flow from falling further", history);
-  }
-
-  template <class Work>
-  static void for_rows(std::size_t n, Work&& work) {
-    flow::for_blocks(n, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) work(i);
-    });
   }
 
   Result<void> judge(const std::vector<double>& history) const {
@@ -201,12 +234,12 @@ class Solver {
             "Ask for a larger tolerance, or adapt the mesh, which mends the worst elements."};
   }
 
-  void report(const State<D>& x, const std::vector<double>& pressure, Flow<D>& out) const {
+  void report(const State& x, const std::vector<double>& pressure, Flow<D>& out) const {
     out.velocity.assign(mesh_.points.size(), Vec<D>::Zero());
     out.pressure.assign(mesh_.points.size(), 0);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      out.velocity[system_.node[i]] = x[i].template head<D>();
-      out.pressure[system_.node[i]] = x[i][D] * flow_.viscosity;
+    for (std::size_t i = 0; i < system_.rows(); ++i) {
+      out.velocity[system_.node[i]] = x.v[i];
+      out.pressure[system_.node[i]] = x.p[i][0] * flow_.viscosity;
     }
     double sum = 0, enters = 0;
     for (std::size_t o = 0; o < system_.openings.size(); ++o) {

@@ -5,9 +5,9 @@
 
 namespace lamella::flow {
 
-/// Block diagonal and symmetric positive definite, for minimal residuals:
+/// Approximate inverses of the blocks of (5.3), both symmetric positive definite:
 /// - velocity: one multigrid cycle on A for all components that are fixed at the same rows, in axes
-///   normal to the symmetries;
+///   normal to the symmetries, scaled such that its inverse is below A;
 /// - pressure: (M + C)^-1 + K^-1 with M the mass and K = int phi grad p . grad q, where
 ///   -lap phi = 1, phi = 0 on walls. Pressures that vary over less than the thickness of a wall see
 ///   the mass. Those that vary along a thin cavity drive the flow phi grad p, of mean H^2 / 12
@@ -15,25 +15,28 @@ namespace lamella::flow {
 template <int D>
 class StokesPreconditioner {
  public:
-  /// Nullopt when cancelled.
+  /// Also smooths the pressure of `system`, if asked. Nullopt when cancelled.
   static std::optional<StokesPreconditioner> build(const SimplexMesh<D>& mesh,
-                                                   const StokesSystem<D>& system,
+                                                   StokesSystem<D>& system, bool smooth,
                                                    const Progress& progress);
-  /// z = P r, in the arena of the caller.
-  void apply(const StokesSystem<D>& system, const State<D>& r, State<D>& z);
+  void velocity(const StokesSystem<D>& system, const Velocities<D>& f, Velocities<D>& v);
+  void pressure(const Pressures& g, Pressures& p);
+  /// Makes the inverse of `velocity` smaller: it was not below A.
+  void shrink_velocity();
 
  private:
   struct Components {
     std::vector<int> axes;
     Multigrid cycle;
+    double scale = 1;
   };
   template <int K>
-  void apply_components(const StokesSystem<D>& system, Components& c, const State<D>& r,
-                        State<D>& z);
+  void apply_components(const StokesSystem<D>& system, Components& c, const Velocities<D>& f,
+                        Velocities<D>& v);
 
   std::vector<Components> velocity_;
   std::optional<Multigrid> mass_, diffusion_;
-  std::vector<Vec<1>> right_, found_;
+  Pressures more_;
 };
 
 }  // namespace lamella::flow

@@ -14,6 +14,9 @@ namespace {
 /// two, a plane whose facets scatter by less is one.
 constexpr double kPlane = 1e-3;
 
+/// Share of the squared sizes in the weight of `smooth_pressure`. Above it changes little.
+constexpr double kSmoothing = 0.01;
+
 enum class Role : char { wall, symmetry, opening };
 
 template <int D>
@@ -349,19 +352,20 @@ Result<StokesSystem<D>> assemble(const SimplexMesh<D>& mesh, const FlowCase<D>& 
   fill_pattern<D>(s);
   if (progress.cancelled()) return cancelled_error();
   progress.report(0.7);
-  s.entry.resize(s.column.size());
+  s.of_velocity.resize(s.column.size());
+  s.of_pressure.resize(s.column.size());
   for_each_coupling<D>(
       mesh, s,
       [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own, int k) {
-        auto& entry = s.entry[at];
         const double a = shape.measure * shape.gradient[own].dot(shape.gradient[k]);
-        entry.a += a;
-        entry.c += bubble_weight<D>(shape.gradient) * a;
-        entry.b -= shape.measure / (D + 1) * shape.gradient[k];
-        entry.bt -= shape.measure / (D + 1) * shape.gradient[own];
+        s.of_velocity[at].a += a;
+        s.of_velocity[at].b -= shape.measure / (D + 1) * shape.gradient[k];
+        s.of_pressure[at].c += bubble_weight<D>(shape.gradient) * a;
+        s.of_pressure[at].bt -= shape.measure / (D + 1) * shape.gradient[own];
       });
   if (flow.body_force) {
-    s.force.assign(s.rows(), Vec<D + 1>::Zero());
+    s.force.assign(s.rows(), Vec<D>::Zero());
+    s.bubble_force.assign(s.rows(), Vec<1>::Zero());
     for_blocks(s.rows(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         for (std::int32_t a = s.around_start[i]; a < s.around_start[i + 1]; ++a) {
@@ -373,43 +377,104 @@ Result<StokesSystem<D>> assemble(const SimplexMesh<D>& mesh, const FlowCase<D>& 
           Vec<D> center = Vec<D>::Zero();
           for (const Vec<D>& x : p) center += x / (D + 1);
           const Vec<D> f = flow.body_force(center) / flow.viscosity;
-          s.force[i].template head<D>() += shape.measure / (D + 1) * f;
-          s.force[i][D] -= bubble_weight<D>(shape.gradient) * shape.measure *
-                           f.dot(shape.gradient[own]);
+          s.force[i] += shape.measure / (D + 1) * f;
+          s.bubble_force[i][0] -= bubble_weight<D>(shape.gradient) * shape.measure *
+                                  f.dot(shape.gradient[own]);
         }
     });
+    constrain<D>(s, s.force);
   }
   progress.report(1);
   return s;
 }
 
 template <int D>
-void multiply(const StokesSystem<D>& s, const State<D>& x, State<D>& y) {
+void smooth_pressure(const SimplexMesh<D>& mesh, StokesSystem<D>& s, const Pressures& phi) {
+  std::vector<Mat<D>> w(s.rows());
+  s.smoothing.resize(s.rows());
   for_blocks(s.rows(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      Vec<D> v = Vec<D>::Zero();
-      double p = 0;
-      for (std::int32_t e = s.start[i]; e < s.start[i + 1]; ++e) {
-        const auto& entry = s.entry[e];
-        const Vec<D + 1>& other = x[s.column[e]];
-        v += entry.a * other.template head<D>() + entry.bt * other[D];
-        p += entry.b.dot(other.template head<D>()) - entry.c * other[D];
+      double mass = 0;
+      Mat<D> sum = Mat<D>::Zero();
+      for (std::int32_t a = s.around_start[i]; a < s.around_start[i + 1]; ++a) {
+        const auto p = corners_of<D>(mesh, s, static_cast<std::size_t>(s.around[a]));
+        const double part = std::abs(signed_measure<D>(p)) / (D + 1);
+        mass += part;
+        sum += part * simplex_metric_inverse<D>(p);
       }
-      y[i].template head<D>() = v;
-      y[i][D] = p;
+      const Spectrum<D> found = spectrum<D>(Mat<D>(sum * (kSmoothing / mass)));
+      const Vec<D> limited = found.values.cwiseMin(std::max(0.0, phi[i][0]));
+      w[i] = found.vectors * limited.asDiagonal() * found.vectors.transpose();
+      s.smoothing[i] = w[i] / mass;
     }
   });
+  // The variance is the mean of the squares, here, less the square of the mean, in `add_pressure`.
+  for_each_coupling<D>(
+      mesh, s,
+      [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
+        Mat<D> mean = Mat<D>::Zero();
+        for (const std::int32_t r : s.elements[e]) mean += w[r] / (D + 1);
+        s.of_pressure[at].c += shape.measure * shape.gradient[own].dot(mean * shape.gradient[k]);
+      });
 }
 
 template <int D>
-void constrain(const StokesSystem<D>& s, State<D>& x) {
+void multiply_velocity(const StokesSystem<D>& s, const Velocities<D>& v, Velocities<D>& f,
+                       Pressures& g) {
+  for_blocks(s.rows(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec<D> sum = Vec<D>::Zero();
+      double divergence = 0;
+      for (std::int32_t e = s.start[i]; e < s.start[i + 1]; ++e) {
+        const Vec<D>& other = v[s.column[e]];
+        sum += s.of_velocity[e].a * other;
+        divergence += s.of_velocity[e].b.dot(other);
+      }
+      f[i] = sum;
+      g[i][0] = divergence;
+    }
+  });
+  constrain<D>(s, f);
+}
+
+template <int D>
+void add_pressure(const StokesSystem<D>& s, const Pressures& p, Velocities<D>& f, Pressures& g) {
+  std::vector<Vec<D>> mean(s.smoothing.size());
+  for_blocks(mean.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec<D> sum = Vec<D>::Zero();
+      for (std::int32_t e = s.start[i]; e < s.start[i + 1]; ++e)
+        sum += p[s.column[e]][0] * s.of_velocity[e].b;
+      mean[i] = s.smoothing[i] * sum;
+    }
+  });
+  for_blocks(s.rows(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec<D> sum = Vec<D>::Zero();
+      double leaves = 0;
+      for (std::int32_t e = s.start[i]; e < s.start[i + 1]; ++e) {
+        const auto& entry = s.of_pressure[e];
+        const double other = p[s.column[e]][0];
+        sum += other * entry.bt;
+        leaves += entry.c * other;
+        if (!mean.empty()) leaves -= entry.bt.dot(mean[s.column[e]]);
+      }
+      f[i] += sum;
+      g[i][0] -= leaves;
+    }
+  });
+  constrain<D>(s, f);
+}
+
+template <int D>
+void constrain(const StokesSystem<D>& s, Velocities<D>& v) {
   for_blocks(s.rows(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      if (s.wall[i]) x[i].template head<D>().setZero();
+      if (s.wall[i]) v[i].setZero();
   });
   for (std::size_t k = 0; k < s.slides.size(); ++k) {
-    auto v = x[s.slides[k]].template head<D>();
-    v = (s.slide_project[k] * v).eval();
+    Vec<D>& x = v[s.slides[k]];
+    x = (s.slide_project[k] * x).eval();
   }
 }
 
@@ -426,7 +491,7 @@ Csr velocity_matrix(const StokesSystem<D>& s, const std::vector<char>& fixed) {
       const bool own = static_cast<std::size_t>(j) == i;
       if (!own && (fixed[i] || fixed[j])) continue;
       out.column.push_back(j);
-      out.value.push_back(s.entry[e].a);
+      out.value.push_back(s.of_velocity[e].a);
     }
     out.start.push_back(static_cast<std::int32_t>(out.column.size()));
   }
@@ -440,7 +505,7 @@ Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s) {
   out.start = s.start;
   out.column = s.column;
   out.value.resize(s.column.size());
-  for (std::size_t e = 0; e < s.entry.size(); ++e) out.value[e] = s.entry[e].c;
+  for (std::size_t e = 0; e < s.of_pressure.size(); ++e) out.value[e] = s.of_pressure[e].c;
   for_each_coupling<D>(mesh, s,
                        [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own,
                            int k) {
@@ -453,25 +518,25 @@ Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s) {
 template <int D>
 Csr pressure_diffusion(const SimplexMesh<D>& mesh, const StokesSystem<D>& s,
                        const std::vector<double>& weight) {
-  std::vector<double> full(s.column.size(), 0);
+  Csr out;
+  out.columns = static_cast<std::int32_t>(s.rows());
+  out.start = s.start;
+  out.column = s.column;
+  out.value.assign(s.column.size(), 0);
   for_each_coupling<D>(
       mesh, s,
       [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
-        full[at] += weight[e] * shape.measure * shape.gradient[own].dot(shape.gradient[k]);
+        out.value[at] += weight[e] * shape.measure * shape.gradient[own].dot(shape.gradient[k]);
+        // Faces of the element on an opening: all nodes but one are open.
+        int inside = -1, count = 0;
+        for (int c = 0; c <= D; ++c)
+          if (!s.open[s.elements[e][c]]) inside = c, ++count;
+        if (count != 1 || own == inside || k == inside) return;
+        const double height = 1 / shape.gradient[inside].norm();
+        const double area = D * shape.measure / height;
+        out.value[at] += weight[e] / std::max(height, std::sqrt(weight[e])) * area *
+                         (own == k ? 2 : 1) / (D * (D + 1.0));
       });
-  Csr out;
-  out.columns = static_cast<std::int32_t>(s.rows());
-  out.start.reserve(s.rows() + 1);
-  for (std::size_t i = 0; i < s.rows(); ++i) {
-    for (std::int32_t e = s.start[i]; e < s.start[i + 1]; ++e) {
-      const std::int32_t j = s.column[e];
-      const bool own = static_cast<std::size_t>(j) == i;
-      if (!own && (s.open[i] || s.open[j])) continue;
-      out.column.push_back(j);
-      out.value.push_back(full[e]);
-    }
-    out.start.push_back(static_cast<std::int32_t>(out.column.size()));
-  }
   return out;
 }
 
@@ -481,10 +546,16 @@ template Result<StokesSystem<2>> assemble(const SimplexMesh<2>&, const FlowCase<
                                           const Progress&);
 template Result<StokesSystem<3>> assemble(const SimplexMesh<3>&, const FlowCase<3>&,
                                           const Progress&);
-template void multiply(const StokesSystem<2>&, const State<2>&, State<2>&);
-template void multiply(const StokesSystem<3>&, const State<3>&, State<3>&);
-template void constrain(const StokesSystem<2>&, State<2>&);
-template void constrain(const StokesSystem<3>&, State<3>&);
+template void smooth_pressure(const SimplexMesh<2>&, StokesSystem<2>&, const Pressures&);
+template void smooth_pressure(const SimplexMesh<3>&, StokesSystem<3>&, const Pressures&);
+template void multiply_velocity(const StokesSystem<2>&, const Velocities<2>&, Velocities<2>&,
+                                Pressures&);
+template void multiply_velocity(const StokesSystem<3>&, const Velocities<3>&, Velocities<3>&,
+                                Pressures&);
+template void add_pressure(const StokesSystem<2>&, const Pressures&, Velocities<2>&, Pressures&);
+template void add_pressure(const StokesSystem<3>&, const Pressures&, Velocities<3>&, Pressures&);
+template void constrain(const StokesSystem<2>&, Velocities<2>&);
+template void constrain(const StokesSystem<3>&, Velocities<3>&);
 template Csr velocity_matrix(const StokesSystem<2>&, const std::vector<char>&);
 template Csr velocity_matrix(const StokesSystem<3>&, const std::vector<char>&);
 template Csr mass_matrix(const SimplexMesh<2>&, const StokesSystem<2>&);
