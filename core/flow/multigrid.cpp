@@ -6,7 +6,7 @@ namespace lamella::flow {
 namespace {
 
 /// A coupling is strong when -a_ij exceeds this times sqrt(a_ii a_jj).
-static const double kStrong = getenv("TH") ? atof(getenv("TH")) : 0.02;
+constexpr double kStrong = 0.02;
 /// The last level is solved directly.
 constexpr std::int32_t kCoarsest = 400;
 constexpr std::size_t kBlock = 2048;

@@ -45,9 +45,12 @@ class Multigrid {
     Work<3> three;
     template <int K>
     Work<K>& work() {
-      if constexpr (K == 1) return one;
-      else if constexpr (K == 2) return two;
-      else return three;
+      if constexpr (K == 1)
+        return one;
+      else if constexpr (K == 2)
+        return two;
+      else
+        return three;
     }
   };
 

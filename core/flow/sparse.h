@@ -39,7 +39,8 @@ void for_blocks(std::size_t count, Work&& work, std::size_t block = 2048) {
 template <class Part>
 double block_sum(std::size_t count, Part&& part, std::size_t block = 2048) {
   std::vector<double> parts((count + block - 1) / block);
-  for_blocks(count, [&](std::size_t b, std::size_t e) { parts[b / block] = part(b, e); }, block);
+  for_blocks(
+      count, [&](std::size_t b, std::size_t e) { parts[b / block] = part(b, e); }, block);
   double sum = 0;
   for (const double p : parts) sum += p;
   return sum;

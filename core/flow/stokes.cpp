@@ -27,7 +27,8 @@ class Solver {
     if (!system) return system.error();
     system_ = std::move(*system);
     auto preconditioner = flow::StokesPreconditioner<D>::build(
-        mesh_, system_, settings_.smooth_pressure, progress.portion(0.15, 0.3, "preparing the flow solver"));
+        mesh_, system_, settings_.smooth_pressure,
+        progress.portion(0.15, 0.3, "preparing the flow solver"));
     if (!preconditioner) return cancelled_error();
     preconditioner_ = std::move(preconditioner);
 
@@ -82,8 +83,7 @@ class Solver {
   double rate(std::size_t opening, const State& x) const {
     const auto& o = system_.openings[opening];
     double sum = 0;
-    for (std::size_t k = 0; k < o.rows.size(); ++k)
-      sum += o.load[k].dot(x.v[o.rows[k]]);
+    for (std::size_t k = 0; k < o.rows.size(); ++k) sum += o.load[k].dot(x.v[o.rows[k]]);
     return sum;
   }
 
@@ -137,17 +137,16 @@ class Solver {
   /// What enters also leaves: the residuals of the pressure add up to the sum of all rates.
   bool balanced(const State& r, const State& x) const {
     double enters = 0, sum = 0;
-    for (std::size_t o = 0; o < system_.openings.size(); ++o)
-      enters += std::max(0.0, -rate(o, x));
+    for (std::size_t o = 0; o < system_.openings.size(); ++o) enters += std::max(0.0, -rate(o, x));
     for (const Vec<1>& p : r.p) sum += p[0];
     return std::abs(sum) <= kBalance * enters;
   }
 
   /// Conjugate gradients of Bramble and Pasciak (1988). With the approximate inverses a of A and s
-  /// of the Schur complement, the rows of (5.3) are replaced by those of (a, s B a, -s), which makes
-  /// it positive definite for the product (A - 1/a, 1/s) as long as 1/a is below A; the products
-  /// are found without 1/a and 1/s. What rounding leaves between the residual carried along and
-  /// the true one is solved for again.
+  /// of the Schur complement, the rows of (5.3) are replaced by those of (a, s B a, -s), which
+  /// makes it positive definite for the product (A - 1/a, 1/s) as long as 1/a is below A; the
+  /// products are found without 1/a and 1/s. What rounding leaves between the residual carried
+  /// along and the true one is solved for again.
   Result<void> solve(const State& b, State& x, std::vector<double>& history,
                      const Progress& progress) {
     State r = b, z = zero(), az = zero(), d = zero(), kd = zero();
@@ -244,8 +243,8 @@ class Solver {
     double sum = 0, enters = 0;
     for (std::size_t o = 0; o < system_.openings.size(); ++o) {
       OpeningFlow opening;
-      opening.group = o < flow_.gates.size() ? flow_.gates[o].group
-                                             : flow_.vents[o - flow_.gates.size()];
+      opening.group =
+          o < flow_.gates.size() ? flow_.gates[o].group : flow_.vents[o - flow_.gates.size()];
       opening.pressure = pressure[o];
       opening.rate = rate(o, x);
       opening.area = system_.openings[o].area;

@@ -30,7 +30,7 @@ struct FlowCase {
 };
 
 struct FlowSettings {
-  double tolerance = 1e-8;    ///< of the residual, relative to that of the fluid at rest
+  double tolerance = 1e-8;  ///< of the residual, relative to that of the fluid at rest
   int most_iterations = 2000;
   /// Couples pressures that differ from node to node along long edges: what the bubbles, which see
   /// the smallest height of an element only, leave to drift on stretched elements. Vanishes where

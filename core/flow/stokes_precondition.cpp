@@ -95,8 +95,10 @@ Pressures torsion(const SimplexMesh<D>& mesh, const StokesSystem<D>& s, Multigri
 }  // namespace
 
 template <int D>
-std::optional<StokesPreconditioner<D>> StokesPreconditioner<D>::build(
-    const SimplexMesh<D>& mesh, StokesSystem<D>& s, bool smooth, const Progress& progress) {
+std::optional<StokesPreconditioner<D>> StokesPreconditioner<D>::build(const SimplexMesh<D>& mesh,
+                                                                      StokesSystem<D>& s,
+                                                                      bool smooth,
+                                                                      const Progress& progress) {
   StokesPreconditioner out;
   std::vector<std::vector<char>> sets;
   for (int axis = 0; axis < D; ++axis) {

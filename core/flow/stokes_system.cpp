@@ -119,8 +119,8 @@ void fill_pattern(StokesSystem<D>& s) {
   });
 }
 
-/// Calls add(entry number, element, its shape, local row, local column) for the couplings of every row, rows
-/// in parallel.
+/// Calls add(entry number, element, its shape, local row, local column) for the couplings of every
+/// row, rows in parallel.
 template <int D, class Add>
 void for_each_coupling(const SimplexMesh<D>& mesh, const StokesSystem<D>& s, Add add) {
   for_blocks(s.rows(), [&](std::size_t begin, std::size_t end) {
@@ -132,7 +132,8 @@ void for_each_coupling(const SimplexMesh<D>& mesh, const StokesSystem<D>& s, Add
         int own = 0;
         while (rows[own] != static_cast<std::int32_t>(i)) ++own;
         for (int k = 0; k <= D; ++k) {
-          const auto first = s.column.begin() + s.start[i], last = s.column.begin() + s.start[i + 1];
+          const auto first = s.column.begin() + s.start[i],
+                     last = s.column.begin() + s.start[i + 1];
           const auto at = std::lower_bound(first, last, rows[k]) - s.column.begin();
           add(static_cast<std::size_t>(at), static_cast<std::size_t>(e), shape, own, k);
         }
@@ -167,8 +168,8 @@ Result<std::vector<Role>> roles_of_groups(const SimplexMesh<D>& mesh, const Flow
   for (const FlowGate& gate : flow.gates) {
     if (Result<void> done = name(gate.group, Role::opening); !done) return done.error();
     if (gate.pressure.has_value() == gate.rate.has_value())
-      return Error{Code::usage, "The gate \"" + gate.group + "\" needs either a pressure or a rate.",
-                   ""};
+      return Error{Code::usage,
+                   "The gate \"" + gate.group + "\" needs either a pressure or a rate.", ""};
     if (!std::isfinite(gate.pressure.value_or(0)) || !std::isfinite(gate.rate.value_or(0)))
       return Error{Code::usage, "The gate \"" + gate.group + "\" has no finite value.", ""};
   }
@@ -265,12 +266,12 @@ Result<void> mark_boundary(const SimplexMesh<D>& mesh, const FlowCase<D>& flow,
       s.openings[o].load.back() += load;
     }
     if (loads[o].empty())
-      return Error{Code::bad_input,
-                   "No boundary face of the mesh belongs to the group \"" +
-                       (o < flow.gates.size() ? flow.gates[o].group
-                                              : flow.vents[o - flow.gates.size()]) +
-                       "\".",
-                   "Give the group faces when the part is meshed."};
+      return Error{
+          Code::bad_input,
+          "No boundary face of the mesh belongs to the group \"" +
+              (o < flow.gates.size() ? flow.gates[o].group : flow.vents[o - flow.gates.size()]) +
+              "\".",
+          "Give the group faces when the part is meshed."};
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (slide_at[i] < 0 || s.wall[i]) continue;
@@ -315,8 +316,7 @@ double bubble_weight(const std::array<Vec<D>, D + 1>& gradient) {
   double sum = 0;
   for (const Vec<D>& g : gradient) sum += g.squaredNorm();
   constexpr double kMean = static_cast<double>(factorial(D)) / factorial(2 * D + 1);
-  constexpr double kEnergy =
-      static_cast<double>(factorial(D)) * (1 << (D - 1)) / factorial(3 * D);
+  constexpr double kEnergy = static_cast<double>(factorial(D)) * (1 << (D - 1)) / factorial(3 * D);
   return kMean * kMean / (kEnergy * sum);
 }
 
@@ -355,8 +355,7 @@ Result<StokesSystem<D>> assemble(const SimplexMesh<D>& mesh, const FlowCase<D>& 
   s.of_velocity.resize(s.column.size());
   s.of_pressure.resize(s.column.size());
   for_each_coupling<D>(
-      mesh, s,
-      [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own, int k) {
+      mesh, s, [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own, int k) {
         const double a = shape.measure * shape.gradient[own].dot(shape.gradient[k]);
         s.of_velocity[at].a += a;
         s.of_velocity[at].b -= shape.measure / (D + 1) * shape.gradient[k];
@@ -378,8 +377,8 @@ Result<StokesSystem<D>> assemble(const SimplexMesh<D>& mesh, const FlowCase<D>& 
           for (const Vec<D>& x : p) center += x / (D + 1);
           const Vec<D> f = flow.body_force(center) / flow.viscosity;
           s.force[i] += shape.measure / (D + 1) * f;
-          s.bubble_force[i][0] -= bubble_weight<D>(shape.gradient) * shape.measure *
-                                  f.dot(shape.gradient[own]);
+          s.bubble_force[i][0] -=
+              bubble_weight<D>(shape.gradient) * shape.measure * f.dot(shape.gradient[own]);
         }
     });
     constrain<D>(s, s.force);
@@ -410,8 +409,7 @@ void smooth_pressure(const SimplexMesh<D>& mesh, StokesSystem<D>& s, const Press
   });
   // The variance is the mean of the squares, here, less the square of the mean, in `add_pressure`.
   for_each_coupling<D>(
-      mesh, s,
-      [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
+      mesh, s, [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
         Mat<D> mean = Mat<D>::Zero();
         for (const std::int32_t r : s.elements[e]) mean += w[r] / (D + 1);
         s.of_pressure[at].c += shape.measure * shape.gradient[own].dot(mean * shape.gradient[k]);
@@ -506,12 +504,10 @@ Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s) {
   out.column = s.column;
   out.value.resize(s.column.size());
   for (std::size_t e = 0; e < s.of_pressure.size(); ++e) out.value[e] = s.of_pressure[e].c;
-  for_each_coupling<D>(mesh, s,
-                       [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own,
-                           int k) {
-                         out.value[at] += shape.measure * (own == k ? 2 : 1) /
-                                          ((D + 1.0) * (D + 2.0));
-                       });
+  for_each_coupling<D>(
+      mesh, s, [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own, int k) {
+        out.value[at] += shape.measure * (own == k ? 2 : 1) / ((D + 1.0) * (D + 2.0));
+      });
   return out;
 }
 
@@ -524,8 +520,7 @@ Csr pressure_diffusion(const SimplexMesh<D>& mesh, const StokesSystem<D>& s,
   out.column = s.column;
   out.value.assign(s.column.size(), 0);
   for_each_coupling<D>(
-      mesh, s,
-      [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
+      mesh, s, [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
         out.value[at] += weight[e] * shape.measure * shape.gradient[own].dot(shape.gradient[k]);
         // Faces of the element on an opening: all nodes but one are open.
         int inside = -1, count = 0;

@@ -59,9 +59,9 @@ template <int D>
 Result<StokesSystem<D>> assemble(const SimplexMesh<D>& mesh, const FlowCase<D>& flow,
                                  const Progress& progress);
 
-/// Adds sum_i sum_T |T| / (D + 1) (grad p - g_i)^T W_i (grad q - h_i), T around i, to C; g_i and h_i
-/// are the means of the gradients around i. W_i is a hundredth of the squared sizes of the elements
-/// around i, at most phi_i: see `FlowSettings::smooth_pressure`.
+/// Adds sum_i sum_T |T| / (D + 1) (grad p - g_i)^T W_i (grad q - h_i), T around i, to C; g_i and
+/// h_i are the means of the gradients around i. W_i is a hundredth of the squared sizes of the
+/// elements around i, at most phi_i: see `FlowSettings::smooth_pressure`.
 template <int D>
 void smooth_pressure(const SimplexMesh<D>& mesh, StokesSystem<D>& s, const Pressures& phi);
 
@@ -82,8 +82,8 @@ Csr velocity_matrix(const StokesSystem<D>& s, const std::vector<char>& fixed);
 /// The pressure mass and the C of the bubbles alone, before `smooth_pressure`.
 template <int D>
 Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s);
-/// int w grad p . grad q with a weight w (mm^2) for each element. At an opening the pressure outside
-/// is known: w p q / max(height of the element, sqrt w) there.
+/// int w grad p . grad q with a weight w (mm^2) for each element. At an opening the pressure
+/// outside is known: w p q / max(height of the element, sqrt w) there.
 template <int D>
 Csr pressure_diffusion(const SimplexMesh<D>& mesh, const StokesSystem<D>& s,
                        const std::vector<double>& weight);
