@@ -13,6 +13,13 @@ struct ElementField {
   std::vector<double> values;  ///< [element]
 };
 
+/// Numbers or vectors at the nodes, by name.
+struct NodeField {
+  std::string name;
+  int components = 1;          ///< 1 or 3
+  std::vector<double> values;  ///< [node * components + component], the virtual node too
+};
+
 /// Fields to be written beside a mesh of tetrahedra; a null pointer is left out. Borrowed, never
 /// owned. Node fields are indexed by NodeId, entry 0 is the virtual node.
 struct MeshFields {
@@ -21,6 +28,7 @@ struct MeshFields {
   const std::vector<double>* layers = nullptr;     ///< [node] measured; NaN where not
   const std::vector<double>* quality = nullptr;    ///< [element] c(T), eq. (3.7)
   std::vector<ElementField> of_elements{};         ///< further ones; VTU only
+  std::vector<NodeField> of_nodes{};               ///< the same at the nodes
 };
 
 }  // namespace lamella

@@ -13,7 +13,7 @@ namespace lamella {
 ///
 /// Cell arrays, Int32: `body` (-1 on triangles), `group` and `face` (-1 on tetrahedra); `quality`
 /// and further fields of elements are NaN on triangles. Point arrays: `metric` (active tensors, XX
-/// YY ZZ XY YZ XZ, mm^-2), `thickness` (mm), `layers`. Field arrays of strings: `body_names`,
+/// YY ZZ XY YZ XZ, mm^-2), `thickness` (mm), `layers` and further fields of nodes. Field arrays of strings: `body_names`,
 /// `group_names`, `unit`, `generator`. Errors: io; cancelled. Nothing is left behind on failure.
 Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
                        const std::filesystem::path& file, const Progress& progress = {});
@@ -25,6 +25,7 @@ struct VtuContent {
   std::vector<double> layers;             ///< [node]
   std::vector<double> quality;            ///< [element]
   std::vector<ElementField> of_elements;  ///< further numbers of elements
+  std::vector<NodeField> of_nodes;        ///< further numbers and vectors at the nodes
 };
 
 /// A grid as written by `write_vtu`; of other writers' grids the tetrahedra and triangles.
