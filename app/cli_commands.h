@@ -17,5 +17,6 @@ int run_sample(const SampleCommand& command, Console& console);
 int run_case(const CaseCommand& command, Console& console);
 int run_box(const BoxCommand& command, Console& console);
 int run_slice(const SliceCommand& command, Console& console);
+int run_flow(const FlowCommand& command, Console& console);
 
 }  // namespace lamella::cli

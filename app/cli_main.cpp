@@ -60,7 +60,8 @@ int main(int argc, char** argv) {
                                  [&](const SampleCommand& c) { return run_sample(c, console); },
                                  [&](const CaseCommand& c) { return run_case(c, console); },
                                  [&](const BoxCommand& c) { return run_box(c, console); },
-                                 [&](const SliceCommand& c) { return run_slice(c, console); }},
+                                 [&](const SliceCommand& c) { return run_slice(c, console); },
+                                 [&](const FlowCommand& c) { return run_flow(c, console); }},
                       *command);
   } catch (const std::bad_alloc&) {
     return Console(json, interrupt.token())

@@ -35,6 +35,7 @@ Examples:
   lamella-cli adapt cube.mesh --metric polar-2 --iterations 5 -o adapted.mesh
   lamella-cli box --dimension 4 --cells 4,4,4,8 --high 1,1,1,2 -o spacetime.mesh
   lamella-cli slice spacetime.mesh --times 0.5,1,1.5 -o at.vtu
+  lamella-cli flow t.msh --gate in=20 --vent out -o flow.vtu
 )";
 
 std::string joined(const std::vector<std::string>& names) {
@@ -170,6 +171,68 @@ void add_adapt(CLI::App* a, AdaptCommand& adapt) {
   a->add_option("--seed", adapt.seed, "Another seed gives another, equally good mesh [1]")
       ->option_text("N");
   add_json(a, adapt.json);
+}
+
+void add_flow(CLI::App* f, FlowCommand& flow) {
+  const auto several = [f](const char* name, std::vector<std::string>& texts, const char* form,
+                           const char* what) {
+    f->add_option(name, texts, what)->option_text(form)->allow_extra_args(false);
+  };
+  const auto number = [f](const char* name, auto& value, const char* text, const char* what) {
+    return f->add_option(name, value, what)->option_text(text)->check(CLI::PositiveNumber);
+  };
+  f->add_option("MESH", flow.mesh, "Medit .mesh (2D or 3D), .msh or .vtu")
+      ->option_text(" ")
+      ->required();
+  several(
+      "--gate", flow.gates, "GROUP[=P]",
+      "Boundary group where the fluid enters, at a pressure in MPa [1]; may be repeated, as the "
+      "next three");
+  several("--gate-rate", flow.rates, "GROUP=Q",
+          "The same with the rate that enters, mm3/s (in 2D mm2/s), in place of the pressure");
+  several("--vent", flow.vents, "GROUP", "Group where it leaves, at the pressure 0");
+  several("--symmetry", flow.symmetries, "GROUP",
+          "Planes of symmetry; all other groups are walls that the fluid sticks to");
+  number("--viscosity", flow.viscosity, "ETA", "MPa s [1]");
+  f->add_option("--body", flow.body, "Solve in this body alone [all of the mesh]")
+      ->option_text("NAME");
+  f->add_option("--tolerance", flow.tolerance, "Residual to reach, relative to the first [1e-8]")
+      ->option_text("X")
+      ->check(CLI::Range(1e-14, 0.5));
+  f->add_option("-o,--output", flow.output, "VTU file to write, with all fields")
+      ->option_text("FILE");
+  auto* correct =
+      f->add_option("--correct", flow.correct,
+                    "Correct the metric of the mesh: by the gradient of the acceleration or of the "
+                    "velocity (acceleration, velocity), by the strain rate (strain), by the change "
+                    "of direction or the residual smoothed over the elements (direction, residual, "
+                    "directional), or by the gradient of a field of the .vtu at its nodes "
+                    "(field:NAME), which needs no gate")
+          ->option_text("METHOD");
+  number("--strength", flow.strength, "MU",
+         "Of the gradient term: times the mu that lets it dominate the metric [1]")
+      ->needs(correct);
+  number("--beta", flow.beta, "B",
+         "Of a smoothed indicator: factor of the mean error; below 1 refines [1]")
+      ->needs(correct);
+  number(
+      "--elements", flow.elements, "N",
+      "Elements that the corrected metric may ask for; of a smoothed indicator, that it asks for")
+      ->needs(correct);
+  number("--h-min", flow.h_min, "X", "Smallest size of the correction, mm [no bound]")
+      ->needs(correct);
+  f->add_option("--sol", flow.sol,
+                "Metric to correct (Medit .sol) [that of the file, or what the elements are]")
+      ->option_text("FILE")
+      ->needs(correct);
+  auto* out = f->add_option("--correct-out", flow.correct_out, "Medit .sol to write it to")
+                  ->option_text("FILE")
+                  ->needs(correct);
+  correct->needs(out);
+  f->add_option("--threads", flow.threads, "Threads; the result does not depend on it [all cores]")
+      ->option_text("N")
+      ->check(CLI::Range(0, 4096));
+  add_json(f, flow.json);
 }
 
 void add_sizing(CLI::App* m, MeshCommand& mesh) {
@@ -500,6 +563,11 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   slice_sol->excludes(slice_metric);
   add_json(l, slice.json);
 
+  FlowCommand flow;
+  CLI::App* f = app.add_subcommand(
+      "flow", "Stokes flow between gates and vents, and the metric corrected by it");
+  add_flow(f, flow);
+
   app.footer(kFooter);  // after the subcommands, which would repeat it
   try {
     app.parse(argc, argv);
@@ -530,6 +598,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   if (e->parsed()) return made;
   if (b->parsed()) return box;
   if (l->parsed()) return slice;
+  if (f->parsed()) return flow;
   return sample;
 }
 

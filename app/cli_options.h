@@ -116,9 +116,24 @@ struct SliceCommand {
   bool json = false;
 };
 
+/// A Stokes flow on a mesh, and the metric corrected by it.
+struct FlowCommand {
+  std::string mesh, output, sol, body;
+  std::vector<std::string> gates;  ///< GROUP or GROUP=PRESSURE
+  std::vector<std::string> rates;  ///< GROUP=RATE
+  std::vector<std::string> vents, symmetries;
+  double viscosity = 1, tolerance = 1e-8;
+  std::string correct;  ///< empty: nothing is corrected
+  std::string correct_out;
+  double strength = 1, beta = 1;
+  std::optional<double> h_min, elements;
+  int threads = 0;
+  bool json = false;
+};
+
 using Command =
     std::variant<MeshCommand, AdaptCommand, GenerateCommand, ExportCommand, CheckCommand,
-                 InfoCommand, SampleCommand, CaseCommand, BoxCommand, SliceCommand>;
+                 InfoCommand, SampleCommand, CaseCommand, BoxCommand, SliceCommand, FlowCommand>;
 
 /// Parses the command line. Help, version and errors of usage are printed here: the exit status is
 /// in `status` then, and nothing is returned.

@@ -23,6 +23,13 @@ enum class LengthUnit { mm, m };
 /// "mm" or "m".
 inline const char* unit_name(LengthUnit unit) { return unit == LengthUnit::m ? "m" : "mm"; }
 
+/// Numbers or vectors at the nodes, by name.
+struct NodeField {
+  std::string name;
+  int components = 1;          ///< 1 or 3
+  std::vector<double> values;  ///< [node * components + component], the virtual node too
+};
+
 /// Fields to be written beside a mesh of tetrahedra; a null pointer is left out. Borrowed, never
 /// owned. Node fields are indexed by NodeId, entry 0 is the virtual node.
 struct MeshFields {
@@ -31,6 +38,7 @@ struct MeshFields {
   const std::vector<double>* layers = nullptr;     ///< [node] measured; NaN where not
   const std::vector<double>* quality = nullptr;    ///< [element] c(T), eq. (3.7)
   std::vector<ElementField> of_elements{};         ///< further ones, the filling ratios among them
+  std::vector<NodeField> of_nodes{};               ///< the same at the nodes; VTU only
   LengthUnit unit = LengthUnit::mm;  ///< of all the above and of the mesh, for those that tell it
   std::string provenance{};          ///< JSON object: program, study, inputs; VTU only
 };
@@ -43,6 +51,7 @@ struct MeshContent {
   std::vector<double> layers;             ///< [node]
   std::vector<double> quality;            ///< [element]
   std::vector<ElementField> of_elements;  ///< further numbers of elements
+  std::vector<NodeField> of_nodes;        ///< further numbers and vectors at the nodes
   LengthUnit unit = LengthUnit::mm;       ///< of all the above, where the file tells it
   std::string provenance;                 ///< JSON object, as it was written
 };

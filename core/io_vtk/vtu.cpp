@@ -62,6 +62,17 @@ void add_node_scalar(vtkUnstructuredGrid* grid, const char* name,
   grid->GetPointData()->AddArray(array);
 }
 
+void add_node_field(vtkUnstructuredGrid* grid, const NodeField& field) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(field.name.c_str());
+  array->SetNumberOfComponents(field.components);
+  array->SetNumberOfTuples(grid->GetNumberOfPoints());
+  const auto first = static_cast<std::size_t>(field.components);
+  for (std::size_t i = first; i < field.values.size(); ++i)
+    array->SetValue(static_cast<vtkIdType>(i - first), field.values[i]);
+  grid->GetPointData()->AddArray(array);
+}
+
 void add_metric(vtkUnstructuredGrid* grid, const MetricField<3>* metric) {
   if (!metric) return;
   vtkNew<vtkDoubleArray> array;
@@ -124,6 +135,7 @@ void fill(vtkUnstructuredGrid* grid, const SimplexMesh<3>& mesh, const MeshField
   for (const ElementField& field : fields.of_elements) add_numbers(field.name, field.values);
   add_node_scalar(grid, "thickness", fields.thickness);
   add_node_scalar(grid, "layers", fields.layers);
+  for (const NodeField& field : fields.of_nodes) add_node_field(grid, field);
   add_metric(grid, fields.metric);
 
   add_strings(grid->GetFieldData(), "body_names", mesh.bodies);
@@ -148,6 +160,23 @@ std::vector<double> node_scalar_of(vtkUnstructuredGrid* grid, const char* name) 
   for (vtkIdType v = 0; v < grid->GetNumberOfPoints(); ++v)
     values[static_cast<std::size_t>(v) + 1] = array->GetComponent(v, 0);
   return values;
+}
+
+/// The point arrays of one or three components that have no place of their own.
+std::vector<NodeField> node_fields_of(vtkUnstructuredGrid* grid) {
+  std::vector<NodeField> out;
+  for (int a = 0; a < grid->GetPointData()->GetNumberOfArrays(); ++a) {
+    vtkDataArray* array = grid->GetPointData()->GetArray(a);
+    if (!array || !array->GetName()) continue;
+    const std::string name = array->GetName();
+    const int components = array->GetNumberOfComponents();
+    if ((components != 1 && components != 3) || name == "thickness" || name == "layers") continue;
+    NodeField field{name, components, std::vector<double>(static_cast<std::size_t>(components))};
+    for (vtkIdType v = 0; v < array->GetNumberOfTuples(); ++v)
+      for (int c = 0; c < components; ++c) field.values.push_back(array->GetComponent(v, c));
+    out.push_back(std::move(field));
+  }
+  return out;
 }
 
 /// Value of a cell array of ids; 0 where there is none. `names` grows to hold every id.
@@ -206,6 +235,7 @@ void take(vtkUnstructuredGrid* grid, MeshContent& out) {
   }
   out.thickness = node_scalar_of(grid, "thickness");
   out.layers = node_scalar_of(grid, "layers");
+  out.of_nodes = node_fields_of(grid);
   vtkDataArray* metric = grid->GetPointData()->GetArray("metric");
   if (metric && metric->GetNumberOfComponents() == 6) {
     out.metric.assign(mesh.points.size(), Metric<3>::Identity());

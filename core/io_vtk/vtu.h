@@ -13,9 +13,9 @@ namespace lamella {
 ///
 /// Cell arrays, Int32: `body` (-1 on triangles), `group` and `face` (-1 on tetrahedra); `quality`
 /// and further fields of elements are NaN on triangles. Point arrays: `metric` (active tensors, XX
-/// YY ZZ XY YZ XZ, mm^-2), `thickness` (mm), `layers`. Field arrays of strings: `body_names`,
-/// `group_names`, `unit`, `generator`, `provenance`. Errors: io; cancelled. Nothing is left behind
-/// on failure.
+/// YY ZZ XY YZ XZ, mm^-2), `thickness` (mm), `layers` and further fields of nodes. Field arrays of
+/// strings: `body_names`, `group_names`, `unit`, `generator`, `provenance`. Errors: io; cancelled.
+/// Nothing is left behind on failure.
 Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
                        const std::filesystem::path& file, const Progress& progress = {});
 

@@ -15,7 +15,7 @@ namespace {
 TEST_F(Cli, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(run("--help"), 0);
   for (const std::string name :
-       {"mesh", "adapt", "generate", "check", "info", "sample", "case", "box", "slice", "130"})
+       {"mesh", "adapt", "generate", "check", "info", "sample", "case", "box", "slice", "flow", "130"})
     EXPECT_NE(out.find(name), std::string::npos) << name;
   EXPECT_EQ(run("mesh --help"), 0);
   EXPECT_NE(out.find("--chord-tolerance"), std::string::npos);

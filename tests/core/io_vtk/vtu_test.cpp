@@ -35,6 +35,9 @@ class Vtu : public testing::Test {
     fields.layers = &layers;
     fields.quality = &quality;
     fields.of_elements = {{"filling A", std::vector<double>(mesh.elements.size(), 0.3)}};
+    fields.of_nodes = {{"pressure", 1, layers}, {"velocity", 3, {}}};
+    for (const Vec<3>& x : mesh.points)
+      for (int c = 0; c < 3; ++c) fields.of_nodes[1].values.push_back(2 * x[c]);
     return write_vtu(mesh, fields, folder / "m.vtu", progress);
   }
 };
@@ -58,6 +61,11 @@ TEST_F(Vtu, ReadsBackMeshNamesAndFields) {
   ASSERT_EQ(back->of_elements.size(), 1u);
   EXPECT_EQ(back->of_elements[0].name, "filling A");
   EXPECT_EQ(back->of_elements[0].values, std::vector<double>(mesh.elements.size(), 0.3));
+  ASSERT_EQ(back->of_nodes.size(), 2u);
+  EXPECT_EQ(back->of_nodes[0].name, "pressure");
+  EXPECT_EQ(back->of_nodes[1].components, 3);
+  ASSERT_EQ(back->of_nodes[1].values.size(), 3 * mesh.points.size());
+  EXPECT_EQ(back->of_nodes[1].values[3 * 7 + 1], 2 * mesh.points[7][1]);
 }
 
 // The order of the six components and the type of the ids are what other programs rely on.
