@@ -9,11 +9,15 @@ if(TARGET lamella-cli)
   install(TARGETS lamella-cli)
   find_program(GZIP gzip)
   if(GZIP)
-    add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/lamella-cli.1.gz
-      COMMAND ${GZIP} -9nc ${CMAKE_CURRENT_LIST_DIR}/lamella-cli.1 > ${CMAKE_BINARY_DIR}/lamella-cli.1.gz
-      DEPENDS ${CMAKE_CURRENT_LIST_DIR}/lamella-cli.1 VERBATIM)
-    add_custom_target(lamella_man ALL DEPENDS ${CMAKE_BINARY_DIR}/lamella-cli.1.gz)
-    install(FILES ${CMAKE_BINARY_DIR}/lamella-cli.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    foreach(page lamella-cli.1 lamella-cli-flow.1)
+      set(packed ${CMAKE_BINARY_DIR}/${page}.gz)
+      add_custom_command(OUTPUT ${packed}
+        COMMAND ${GZIP} -9nc ${CMAKE_CURRENT_LIST_DIR}/${page} > ${packed}
+        DEPENDS ${CMAKE_CURRENT_LIST_DIR}/${page} VERBATIM)
+      list(APPEND pages ${packed})
+    endforeach()
+    add_custom_target(lamella_man ALL DEPENDS ${pages})
+    install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   endif()
 endif()
 if(TARGET lamella)
