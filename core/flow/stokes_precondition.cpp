@@ -134,11 +134,11 @@ std::optional<StokesPreconditioner<D>> StokesPreconditioner<D>::build(const Simp
       for (const std::int32_t r : s.elements[e]) weight[e] += std::max(0.0, phi[r][0]) / (D + 1);
     }
   });
-  out.mass_ = Multigrid::build(mass_matrix<D>(mesh, s), progress.portion(0.7, 0.8), 1);
+  out.mass_ = Multigrid::build(mass_matrix<D>(mesh, s, progress), progress.portion(0.7, 0.8), 1);
   if (!out.mass_) return std::nullopt;
-  if (smooth) smooth_pressure<D>(mesh, s, phi);
+  if (smooth) smooth_pressure<D>(mesh, s, phi, progress);
   out.diffusion_ =
-      Multigrid::build(pressure_diffusion<D>(mesh, s, weight), progress.portion(0.8, 1));
+      Multigrid::build(pressure_diffusion<D>(mesh, s, weight, progress), progress.portion(0.8, 1));
   if (!out.diffusion_) return std::nullopt;
   out.more_.resize(s.rows());
   return out;

@@ -122,8 +122,10 @@ void fill_pattern(StokesSystem<D>& s) {
 /// Calls add(entry number, element, its shape, local row, local column) for the couplings of every
 /// row, rows in parallel.
 template <int D, class Add>
-void for_each_coupling(const SimplexMesh<D>& mesh, const StokesSystem<D>& s, Add add) {
+void for_each_coupling(const SimplexMesh<D>& mesh, const StokesSystem<D>& s,
+                       const Progress& progress, Add add) {
   for_blocks(s.rows(), [&](std::size_t begin, std::size_t end) {
+    if (progress.cancelled()) return;
     for (std::size_t i = begin; i < end; ++i)
       for (std::int32_t a = s.around_start[i]; a < s.around_start[i + 1]; ++a) {
         const std::int32_t e = s.around[a];
@@ -355,13 +357,15 @@ Result<StokesSystem<D>> assemble(const SimplexMesh<D>& mesh, const FlowCase<D>& 
   s.of_velocity.resize(s.column.size());
   s.of_pressure.resize(s.column.size());
   for_each_coupling<D>(
-      mesh, s, [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own, int k) {
+      mesh, s, progress,
+      [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own, int k) {
         const double a = shape.measure * shape.gradient[own].dot(shape.gradient[k]);
         s.of_velocity[at].a += a;
         s.of_velocity[at].b -= shape.measure / (D + 1) * shape.gradient[k];
         s.of_pressure[at].c += bubble_weight<D>(shape.gradient) * a;
         s.of_pressure[at].bt -= shape.measure / (D + 1) * shape.gradient[own];
       });
+  if (progress.cancelled()) return cancelled_error();
   if (flow.body_force) {
     s.force.assign(s.rows(), Vec<D>::Zero());
     s.bubble_force.assign(s.rows(), Vec<1>::Zero());
@@ -388,7 +392,8 @@ Result<StokesSystem<D>> assemble(const SimplexMesh<D>& mesh, const FlowCase<D>& 
 }
 
 template <int D>
-void smooth_pressure(const SimplexMesh<D>& mesh, StokesSystem<D>& s, const Pressures& phi) {
+void smooth_pressure(const SimplexMesh<D>& mesh, StokesSystem<D>& s, const Pressures& phi,
+                     const Progress& progress) {
   std::vector<Mat<D>> w(s.rows());
   s.smoothing.resize(s.rows());
   for_blocks(s.rows(), [&](std::size_t begin, std::size_t end) {
@@ -409,7 +414,8 @@ void smooth_pressure(const SimplexMesh<D>& mesh, StokesSystem<D>& s, const Press
   });
   // The variance is the mean of the squares, here, less the square of the mean, in `add_pressure`.
   for_each_coupling<D>(
-      mesh, s, [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
+      mesh, s, progress,
+      [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
         Mat<D> mean = Mat<D>::Zero();
         for (const std::int32_t r : s.elements[e]) mean += w[r] / (D + 1);
         s.of_pressure[at].c += shape.measure * shape.gradient[own].dot(mean * shape.gradient[k]);
@@ -497,7 +503,7 @@ Csr velocity_matrix(const StokesSystem<D>& s, const std::vector<char>& fixed) {
 }
 
 template <int D>
-Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s) {
+Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s, const Progress& progress) {
   Csr out;
   out.columns = static_cast<std::int32_t>(s.rows());
   out.start = s.start;
@@ -505,7 +511,8 @@ Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s) {
   out.value.resize(s.column.size());
   for (std::size_t e = 0; e < s.of_pressure.size(); ++e) out.value[e] = s.of_pressure[e].c;
   for_each_coupling<D>(
-      mesh, s, [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own, int k) {
+      mesh, s, progress,
+      [&](std::size_t at, std::size_t, const ElementShape<D>& shape, int own, int k) {
         out.value[at] += shape.measure * (own == k ? 2 : 1) / ((D + 1.0) * (D + 2.0));
       });
   return out;
@@ -513,14 +520,15 @@ Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s) {
 
 template <int D>
 Csr pressure_diffusion(const SimplexMesh<D>& mesh, const StokesSystem<D>& s,
-                       const std::vector<double>& weight) {
+                       const std::vector<double>& weight, const Progress& progress) {
   Csr out;
   out.columns = static_cast<std::int32_t>(s.rows());
   out.start = s.start;
   out.column = s.column;
   out.value.assign(s.column.size(), 0);
   for_each_coupling<D>(
-      mesh, s, [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
+      mesh, s, progress,
+      [&](std::size_t at, std::size_t e, const ElementShape<D>& shape, int own, int k) {
         out.value[at] += weight[e] * shape.measure * shape.gradient[own].dot(shape.gradient[k]);
         // Faces of the element on an opening: all nodes but one are open.
         int inside = -1, count = 0;
@@ -541,8 +549,10 @@ template Result<StokesSystem<2>> assemble(const SimplexMesh<2>&, const FlowCase<
                                           const Progress&);
 template Result<StokesSystem<3>> assemble(const SimplexMesh<3>&, const FlowCase<3>&,
                                           const Progress&);
-template void smooth_pressure(const SimplexMesh<2>&, StokesSystem<2>&, const Pressures&);
-template void smooth_pressure(const SimplexMesh<3>&, StokesSystem<3>&, const Pressures&);
+template void smooth_pressure(const SimplexMesh<2>&, StokesSystem<2>&, const Pressures&,
+                              const Progress&);
+template void smooth_pressure(const SimplexMesh<3>&, StokesSystem<3>&, const Pressures&,
+                              const Progress&);
 template void multiply_velocity(const StokesSystem<2>&, const Velocities<2>&, Velocities<2>&,
                                 Pressures&);
 template void multiply_velocity(const StokesSystem<3>&, const Velocities<3>&, Velocities<3>&,
@@ -553,11 +563,11 @@ template void constrain(const StokesSystem<2>&, Velocities<2>&);
 template void constrain(const StokesSystem<3>&, Velocities<3>&);
 template Csr velocity_matrix(const StokesSystem<2>&, const std::vector<char>&);
 template Csr velocity_matrix(const StokesSystem<3>&, const std::vector<char>&);
-template Csr mass_matrix(const SimplexMesh<2>&, const StokesSystem<2>&);
-template Csr mass_matrix(const SimplexMesh<3>&, const StokesSystem<3>&);
+template Csr mass_matrix(const SimplexMesh<2>&, const StokesSystem<2>&, const Progress&);
+template Csr mass_matrix(const SimplexMesh<3>&, const StokesSystem<3>&, const Progress&);
 template Csr pressure_diffusion(const SimplexMesh<2>&, const StokesSystem<2>&,
-                                const std::vector<double>&);
+                                const std::vector<double>&, const Progress&);
 template Csr pressure_diffusion(const SimplexMesh<3>&, const StokesSystem<3>&,
-                                const std::vector<double>&);
+                                const std::vector<double>&, const Progress&);
 
 }  // namespace lamella::flow

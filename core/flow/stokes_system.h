@@ -63,7 +63,8 @@ Result<StokesSystem<D>> assemble(const SimplexMesh<D>& mesh, const FlowCase<D>& 
 /// h_i are the means of the gradients around i. W_i is a hundredth of the squared sizes of the
 /// elements around i, at most phi_i: see `FlowSettings::smooth_pressure`.
 template <int D>
-void smooth_pressure(const SimplexMesh<D>& mesh, StokesSystem<D>& s, const Pressures& phi);
+void smooth_pressure(const SimplexMesh<D>& mesh, StokesSystem<D>& s, const Pressures& phi,
+                     const Progress& progress);
 
 /// f = A v, g = B v.
 template <int D>
@@ -79,14 +80,15 @@ void constrain(const StokesSystem<D>& s, Velocities<D>& v);
 /// A, with rows and columns of fixed rows replaced by those of the identity.
 template <int D>
 Csr velocity_matrix(const StokesSystem<D>& s, const std::vector<char>& fixed);
-/// The pressure mass and the C of the bubbles alone, before `smooth_pressure`.
+/// These are not complete when cancelled: the pressure mass and the C of the bubbles alone, before
+/// `smooth_pressure`.
 template <int D>
-Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s);
+Csr mass_matrix(const SimplexMesh<D>& mesh, const StokesSystem<D>& s, const Progress& progress);
 /// int w grad p . grad q with a weight w (mm^2) for each element. At an opening the pressure
 /// outside is known: w p q / max(height of the element, sqrt w) there.
 template <int D>
 Csr pressure_diffusion(const SimplexMesh<D>& mesh, const StokesSystem<D>& s,
-                       const std::vector<double>& weight);
+                       const std::vector<double>& weight, const Progress& progress);
 /// (int b)^2 / (|T| int |grad b|^2) of the bubble b = l_0 .. l_D, mm^2.
 template <int D>
 double bubble_weight(const std::array<Vec<D>, D + 1>& gradient);
