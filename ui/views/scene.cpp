@@ -134,6 +134,11 @@ struct Scene::Impl {
   QColor color_of_body(int body) const {
     const int part = part_of_body[static_cast<std::size_t>(body)];
     if (part >= 0) return parts[static_cast<std::size_t>(part)].color;
+    // A mesh file without its study: its bodies must differ still.
+    const std::vector<std::string>& names = state->mesh.bodies;
+    if (names.size() > 1)
+      return names[static_cast<std::size_t>(body)] == "background" ? theme::surroundings
+                                                                   : body_color(body);
     static const QColor plain(0x7f, 0xa8, 0xd1);
     return plain;
   }
