@@ -5,6 +5,7 @@
 #include "app/cli_common.h"
 #include "core/cad/load_parts.h"
 #include "core/cad/sample_parts.h"
+#include "core/mesh/fitness.h"
 #include "core/natural/layers.h"
 #include "core/study/measure.h"
 #include "core/study/study_file.h"
@@ -44,6 +45,29 @@ void say_check(Console& console, const CheckReport& r, bool with_metric) {
   if (with_metric)
     console.say("unit edges " + short_number(100 * r.unit_edges, 5) + " %, allocation (1.34) " +
                 short_number(r.allocation, 5));
+}
+
+/// What solvers will say of the mesh, whatever its metric.
+int check_solvers(const SimplexMesh<3>& mesh, const Progress& progress, Console& console) {
+  const Result<Fitness> found = fitness(mesh, progress);
+  if (!found) return console.fail(found.error());
+  Json json = {{"phase", "solvers"}, {"criteria", Json::array()}};
+  console.say(
+      "what solvers ask                                                          here              "
+      "  asked");
+  for (const FitnessLine& line : fitness_lines(*found, mesh.bodies.size(), {})) {
+    char text[240];
+    std::snprintf(text, sizeof text, "  %-15s %-48s %-19s %s", line.solver.c_str(),
+                  line.criterion.c_str(), line.value.c_str(), line.bound.c_str());
+    console.say(std::string(text) + (line.holds ? "" : "  not held. " + line.advice));
+    json["criteria"].push_back({{"solver", line.solver},
+                                {"criterion", line.criterion},
+                                {"value", line.value},
+                                {"bound", line.bound},
+                                {"holds", line.holds}});
+  }
+  console.emit(dump(json));
+  return 0;
 }
 
 /// Layers of each body between the walls of the mesh itself.
@@ -99,11 +123,13 @@ int check_mesh(const SimplexMesh<D>& mesh, MetricField<D> metric, const CheckCom
   if (!report) return console.fail(report.error());
   say_check(console, *report, with_metric);
   console.emit(dump(report_json(*report, with_metric)));
+  if constexpr (D == 3)
+    if (const int status = check_solvers(mesh, progress.portion(0.7, 0.75), console)) return status;
   if (!report->mesh.valid())
     return console.fail({Code::bad_input, "\"" + c.mesh + "\": " + report->mesh.first_finding, ""});
   if constexpr (D == 3)
     if (c.layers)
-      if (const int status = check_layers(mesh, *c.layers, progress.portion(0.7, 1), console))
+      if (const int status = check_layers(mesh, *c.layers, progress.portion(0.75, 1), console))
         return status;
   if (c.min_quality && report->quality.min < *c.min_quality)
     return console.fail({Code::poor_quality,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <numbers>
 #include <numeric>
 
 #include "core/base/atomic_file.h"
@@ -202,32 +201,6 @@ std::string metric_text(const MetricField<3>& metric, const Faces& faces) {
   return out.text();
 }
 
-Orthogonality orthogonality(const SimplexMesh<3>& mesh, const Faces& faces) {
-  constexpr double kDegrees = 180 / std::numbers::pi;
-  const auto center = [&](std::int32_t cell) {
-    Vec<3> sum = Vec<3>::Zero();
-    for (const NodeId v : mesh.elements[cell]) sum += mesh.points[v];
-    return Vec<3>(sum / 4);
-  };
-  Orthogonality found;
-  double least = 1, sum = 0;
-  for (std::size_t f = 0; f < faces.neighbor.size(); ++f) {
-    const Vec<3> across = center(faces.neighbor[f]) - center(faces.owner[f]);
-    const Vec<3> normal = facet_normal<3>(mesh.corners(faces.nodes[f]));
-    const double size = across.norm() * normal.norm();
-    const double cosine = size > 0 ? across.dot(normal) / size : 1;
-    least = std::min(least, cosine);
-    sum += cosine;
-    if (cosine < std::cos(70 / kDegrees)) ++found.severe;
-  }
-  found.faces = faces.neighbor.size();
-  found.largest = kDegrees * std::acos(std::clamp(least, -1.0, 1.0));
-  if (found.faces > 0)
-    found.mean =
-        kDegrees * std::acos(std::clamp(sum / static_cast<double>(found.faces), -1.0, 1.0));
-  return found;
-}
-
 Error folder_error(const fs::path& folder, const std::error_code& ec) {
   return {Code::io, "\"" + folder.string() + "\" cannot be written (" + ec.message() + ").",
           "Check the permissions of the folder and the space on the disk."};
@@ -285,8 +258,8 @@ std::string patch_type(const std::string& group) {
   return "wall";
 }
 
-Result<Orthogonality> write_open_foam(const SimplexMesh<3>& mesh, const MeshFields& fields,
-                                      const fs::path& file, const Progress& progress) {
+Result<void> write_open_foam(const SimplexMesh<3>& mesh, const MeshFields& fields,
+                             const fs::path& file, const Progress& progress) {
   const fs::path root = file.has_parent_path() ? file.parent_path() : ".";
   const fs::path mesh_folder = root / "constant" / "polyMesh";
   const fs::path fresh = root / "constant" / ".polyMesh.part";
@@ -325,7 +298,7 @@ Result<Orthogonality> write_open_foam(const SimplexMesh<3>& mesh, const MeshFiel
       if (auto done = write_file(path, header("dictionary", "system", name) + text); !done)
         return done.error();
   if (auto done = write_file(file, ""); !done) return done.error();
-  return orthogonality(mesh, faces);
+  return {};
 }
 
 }  // namespace lamella

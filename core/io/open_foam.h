@@ -10,15 +10,6 @@
 
 namespace lamella {
 
-/// What OpenFOAM will say about a mesh, angles in degrees between the normal of a face and the line
-/// from center to center of its two cells.
-struct Orthogonality {
-  double largest = 0;
-  double mean = 0;         ///< arc cosine of the mean cosine, as checkMesh tells it
-  std::size_t faces = 0;   ///< between two cells
-  std::size_t severe = 0;  ///< of these beyond 70 degrees
-};
-
 /// An OpenFOAM case around `file`, NAME.foam, an empty file that ParaView opens: in its folder
 /// constant/polyMesh (in m, which the coordinates must be), cell zones for the bodies, patches for
 /// the groups and face zones for what of them lies within the mesh; 0/alpha.BODY for each body's
@@ -26,9 +17,8 @@ struct Orthogonality {
 /// "symm" in it makes a symmetry; gate, vent, inlet, outlet and opening a patch; all else is a
 /// wall. The files of system/ are written where there are none. All boundary faces must be listed,
 /// all nodes be used. An older polyMesh is replaced. Errors: io; cancelled.
-Result<Orthogonality> write_open_foam(const SimplexMesh<3>& mesh, const MeshFields& fields,
-                                      const std::filesystem::path& file,
-                                      const Progress& progress = {});
+Result<void> write_open_foam(const SimplexMesh<3>& mesh, const MeshFields& fields,
+                             const std::filesystem::path& file, const Progress& progress = {});
 
 /// "patch", "wall" or "symmetry".
 std::string patch_type(const std::string& group);

@@ -10,6 +10,7 @@
 #include "core/io/open_foam.h"
 #include "core/io/stl.h"
 #include "core/io/unv.h"
+#include "core/mesh/fitness.h"
 
 namespace lamella {
 
@@ -80,15 +81,18 @@ MeshFormat open_foam() {
   f.names = {.any = false, .marks = "_-.", .shared = true};
   f.write = [](const SimplexMesh<3>& mesh, const MeshFields& fields, const fs::path& file,
                const Progress& progress) -> Result<Notes> {
-    const Result<Orthogonality> found = write_open_foam(mesh, fields, file, progress);
+    if (auto done = write_open_foam(mesh, fields, file, progress.portion(0, 0.8)); !done)
+      return done.error();
+    const Result<Fitness> found = fitness(mesh, progress.portion(0.8, 1));
     if (!found) return found.error();
     char line[240];
     std::snprintf(line, sizeof line,
                   "non-orthogonality: largest %.1f degrees, mean %.1f; %zu of %zu inner faces are "
                   "beyond 70",
-                  found->largest, found->mean, found->severe, found->faces);
+                  found->non_orthogonality, found->non_orthogonality_mean, found->beyond_70,
+                  found->inner_faces);
     Notes notes = {line};
-    if (found->severe > 0)
+    if (found->beyond_70 > 0)
       notes.push_back(
           "beyond 70 degrees OpenFOAM needs non-orthogonal correctors and limited schemes; adapt "
           "the mesh with a smaller --max-anisotropy if the solver does not converge");

@@ -124,16 +124,10 @@ Result<Report> build_report(const Study& study, const Outcome& outcome,
   report.final_record = *record;
   if (!records.empty()) report.final_record.layers = join(records).layers;
 
-  std::size_t over = 0;
-  for (std::size_t e = 0; e < state.mesh.elements.size(); ++e) {
-    if (e % 65536 == 0 && progress.cancelled()) return cancelled_error();
-    const double aspect = aspect_ratio<3>(state.mesh.corners(state.mesh.elements[e]));
-    report.aspect_max = std::max(report.aspect_max, aspect);
-    over += aspect > 50;
-    report.quality.add(state.quality[e]);
-  }
-  report.aspect_over_50 = static_cast<double>(over) /
-                          static_cast<double>(std::max<std::size_t>(1, state.mesh.elements.size()));
+  Result<Fitness> found = fitness(state.mesh, progress.portion(0.9, 1));
+  if (!found) return found.error();
+  report.fitness = std::move(*found);
+  for (const double q : state.quality) report.quality.add(q);
 
   int asked = 1;
   for (const BodyOutcome& body : outcome.bodies) asked = std::max(asked, body.layers_asked);
@@ -141,6 +135,13 @@ Result<Report> build_report(const Study& study, const Outcome& outcome,
   for (std::size_t v = 1; v < state.layers.size(); ++v) report.layers.add(state.layers[v]);
   progress.report(1);
   return report;
+}
+
+std::vector<FitnessLine> fitness_lines(const Report& report) {
+  const MeshState& state = *report.outcome.state;
+  const LayerStats& layers = report.final_record.layers;
+  return fitness_lines(report.fitness, report.study.domain ? 1 : state.mesh.bodies.size(),
+                       layers.places > 0 ? std::optional(layers.p5) : std::nullopt);
 }
 
 std::string record_json(const IterationRecord& record) { return dump(iteration_json(record), -1); }
@@ -169,9 +170,16 @@ std::string report_json(const Report& report) {
                      {"mean", report.final_record.quality_mean},
                      {"conformity", report.final_record.conformity},
                      {"unit_edges", report.final_record.unit_edges},
-                     {"aspect_ratio_max", report.aspect_max},
-                     {"aspect_ratio_over_50", report.aspect_over_50},
+                     {"aspect_ratio_max", report.fitness.aspect.max},
+                     {"aspect_ratio_over_50", report.fitness.aspect_over_50},
                      {"histogram", histogram_json(report.quality)}};
+  json["solvers"] = Json::array();
+  for (const FitnessLine& line : fitness_lines(report))
+    json["solvers"].push_back({{"solver", line.solver},
+                               {"criterion", line.criterion},
+                               {"value", line.value},
+                               {"bound", line.bound},
+                               {"holds", line.holds}});
   json["layers"] = layers_json(report.final_record.layers);
   json["layers"]["histogram"] = histogram_json(report.layers);
   json["bodies"] = Json::array();

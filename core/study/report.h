@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/io/export_certificate.h"
+#include "core/mesh/fitness.h"
 #include "core/mesh/validate.h"
 #include "core/study/run.h"
 #include "core/study/svg_plot.h"
@@ -35,11 +36,13 @@ struct Report {
   ReportContext context;
   MeshReport validity;
   IterationRecord final_record;  ///< of the mesh that was kept
-  double aspect_max = 0;         ///< Euclidean, sqrt(1.5) Lmax / hmin
-  double aspect_over_50 = 0;     ///< share of elements, 0..1
+  Fitness fitness;
   Histogram quality{0, 1, 25};
   Histogram layers{0, 1, 1};  ///< of the nodes where layers were measured
 };
+
+/// What solvers ask of the mesh, judged.
+std::vector<FitnessLine> fitness_lines(const Report& report);
 
 /// Errors: cancelled.
 Result<Report> build_report(const Study& study, const Outcome& outcome,

@@ -243,8 +243,6 @@ std::string conformity_and_settings(const Report& r) {
   html += row("boundary area", short_number(v.boundary_area, 8) + " mm&sup2;");
   html += row("conformity to the metric (0 is perfect)", fixed(f.conformity, 3));
   html += row("unit edges", percent(f.unit_edges));
-  html += row("largest aspect ratio (Euclidean)", short_number(r.aspect_max, 4));
-  html += row("elements with aspect ratio above 50", percent(r.aspect_over_50));
   html += "</table></div><div><h2>Settings</h2><table>";
   for (const BodyOutcome& b : r.outcome.bodies) {
     const BodySettings s = settings_of(r.study, b.name);
@@ -270,6 +268,25 @@ std::string conformity_and_settings(const Report& r) {
   html += row("detector", std::string(detector_name(o.detector)));
   html += row("time", short_number(r.outcome.seconds, 3) + " s");
   return html + "</table></div></div>";
+}
+
+std::string solvers(const Report& r) {
+  std::string html =
+      "<h2>What this mesh is fit for</h2><table><tr><th>solver</th><th "
+      "class=\"left\">criterion</th>"
+      "<th>here</th><th>asked</th><th class=\"left\">verdict</th></tr>";
+  std::string before;
+  for (const FitnessLine& line : fitness_lines(r)) {
+    html += "<tr>" + cell(line.solver == before ? "" : line.solver, true) +
+            cell(line.criterion, true) + cell(line.value) + cell(line.bound) +
+            cell(line.bound.empty() ? "told"
+                 : line.holds       ? "<b class=\"good\">holds</b>"
+                                    : "<b class=\"bad\">does not hold.</b> " + line.advice,
+                 true) +
+            "</tr>";
+    before = line.solver;
+  }
+  return html + "</table>";
 }
 
 std::string files(const Report& r) {
@@ -317,7 +334,7 @@ std::string report_html(const Report& report) {
          "</style></head>\n<body><main><header><h1>" + escaped(report.study.name) +
          "</h1><span>Mesh report &middot; Lamella " + version() + "</span></header>\n" +
          verdict(report) + tiles(report) + bodies_table(report) + below_table(report) +
-         plots(report) + conformity_and_settings(report) + files(report) +
+         plots(report) + conformity_and_settings(report) + solvers(report) + files(report) +
          "<footer>Lengths in mm. Quality, conformity and edges are measured in the metric asked; "
          "layers are counted from wall to wall in the mesh's own metric; boundary to part and part "
          "to "

@@ -7,6 +7,7 @@
 #include "core/base/atomic_file.h"
 #include "core/io/mesh_file.h"
 #include "core/io/open_foam.h"
+#include "core/mesh/fitness.h"
 #include "core/mesh/sample_meshes.h"
 #include "tests/support/foreign_program.h"
 #include "tests/support/temporary_folder.h"
@@ -158,14 +159,18 @@ TEST_F(ForeignReader, OpenFoamIntegratesTheFillingRatios) {
 TEST_F(ForeignReader, ThinTetrahedraAreToldBeforeTheSolverTells) {
   LAMELLA_NEEDS_PROGRAM("checkMesh");
   const SimplexMesh<3> thin = box_mesh<3>({4, 4, 4}, Vec<3>(0, 0, 0), Vec<3>(90, 90, 1));
-  const auto found = write_open_foam(thin, {}, folder / "thin.foam");
-  ASSERT_TRUE(found.ok());
+  ASSERT_TRUE(write_open_foam(thin, {}, folder / "thin.foam").ok());
+  const auto found = fitness(thin);
   const std::string said = run(test::open_foam("checkMesh"));
-  EXPECT_GT(found->largest, 80);
-  EXPECT_NEAR(found->largest, test::number_behind(said, "non-orthogonality Max:"), 1e-3) << said;
-  EXPECT_NEAR(found->mean, test::number_behind(said, "average:"), 1e-3);
-  EXPECT_EQ(found->severe, static_cast<std::size_t>(test::number_behind(
-                               said, "severely non-orthogonal (> 70 degrees) faces:")));
+  EXPECT_GT(found->non_orthogonality, 80);
+  EXPECT_NEAR(found->non_orthogonality, test::number_behind(said, "non-orthogonality Max:"), 1e-3)
+      << said;
+  EXPECT_NEAR(found->non_orthogonality_mean, test::number_behind(said, "average:"), 1e-3);
+  EXPECT_EQ(found->beyond_70, static_cast<std::size_t>(test::number_behind(
+                                  said, "severely non-orthogonal (> 70 degrees) faces:")));
+  EXPECT_NEAR(std::max(found->skewness.max, found->boundary_skewness),
+              test::number_behind(said, "Max skewness ="), 1e-4)
+      << said;
 }
 
 TEST_F(ForeignReader, GmshToFoamReadsMsh22) {

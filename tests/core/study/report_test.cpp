@@ -72,8 +72,8 @@ TEST(Report, MeasuresTheMeshItself) {
   EXPECT_EQ(report.final_record.nodes, 7u * 6u * 5u);
   EXPECT_EQ(report.final_record.elements, 720u);
   // A Kuhn tetrahedron of the unit cube: longest edge sqrt 3, smallest height 1/sqrt 2.
-  EXPECT_NEAR(report.aspect_max, std::sqrt(1.5) * std::sqrt(3.0) * std::sqrt(2.0), 1e-12);
-  EXPECT_EQ(report.aspect_over_50, 0);
+  EXPECT_NEAR(report.fitness.aspect.max, std::sqrt(1.5) * std::sqrt(3.0) * std::sqrt(2.0), 1e-12);
+  EXPECT_EQ(report.fitness.aspect_over_50, 0);
   std::size_t counted = 0;
   for (const std::size_t n : report.quality.counts) counted += n;
   EXPECT_EQ(counted, 720u);
