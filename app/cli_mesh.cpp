@@ -57,6 +57,7 @@ Result<Request> request_of(const MeshCommand& c) {
     for (StudyInput& input : request.study.inputs) input.unit = unit_factor(*c.unit);
   StudyOptions& o = request.study.options;
   if (c.chord_tolerance) o.chord_tolerance = c.chord_tolerance;
+  if (c.max_anisotropy) o.max_anisotropy = c.max_anisotropy;
   if (c.angle_tolerance) o.angle_tolerance = *c.angle_tolerance;
   if (c.iterations) o.iterations = *c.iterations;
   if (c.threads) o.threads = *c.threads;

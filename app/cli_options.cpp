@@ -431,6 +431,10 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   m->add_option("--h-max", mesh.h_max, "Largest size, mm [no bound]")
       ->option_text("X")
       ->check(CLI::PositiveNumber);
+  m->add_option("--max-anisotropy", mesh.max_anisotropy,
+                "Longest over shortest size of an element across a wall [no bound]")
+      ->option_text("X")
+      ->check(CLI::Range(1.0, 1e300));
   add_chord(m, mesh.chord_tolerance);
   m->add_option("--angle-tolerance", mesh.angle_tolerance,
                 "Largest angle between neighbors of the tessellation [0.35]")

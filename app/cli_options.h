@@ -14,7 +14,8 @@ struct MeshCommand {
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
   std::optional<int> layers, layers2, layers3;
-  std::optional<double> alpha, alpha2, h_min, h_max, chord_tolerance, angle_tolerance;
+  std::optional<double> alpha, alpha2, h_min, h_max, chord_tolerance, angle_tolerance,
+      max_anisotropy;
   std::optional<int> iterations, threads;
   std::optional<std::uint64_t> seed;
   std::optional<double> min_quality;

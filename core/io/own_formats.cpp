@@ -95,7 +95,8 @@ MeshFormat open_foam() {
     if (found->beyond_70 > 0)
       notes.push_back(
           "beyond 70 degrees OpenFOAM needs non-orthogonal correctors and limited schemes; adapt "
-          "the mesh with a smaller --max-anisotropy if the solver does not converge");
+          "the mesh with a smaller --max-anisotropy, or mesh with one, if the solver does not "
+          "converge");
     return notes;
   };
   f.read = read_open_foam;

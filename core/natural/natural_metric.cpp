@@ -45,9 +45,13 @@ Natural NaturalDetector::at(const Vec<3>& x, const NaturalParams& params) const 
     const SeenAxes seen = EllipsoidFit::at(impl_->locator, ball.center, ball.radius, ball.across);
     const double thickness = 2 * ball.radius;
     Metric<3> metric = Metric<3>::Zero();
+    double longest = h_max;
     for (int k = 0; k < 3; ++k) {
       const double ratio = seen.length[k] / seen.length[0];
-      const double h = std::clamp(thickness * ratio / divisor(params, ratio), params.h_min, h_max);
+      const double h =
+          std::clamp(thickness * ratio / divisor(params, ratio), params.h_min, longest);
+      // Axes come from the shortest on.
+      if (k == 0 && params.max_anisotropy > 0) longest = std::min(h_max, params.max_anisotropy * h);
       metric += seen.axis.col(k) * seen.axis.col(k).transpose() / (h * h);
     }
     // Walls that meet at a re-entrant edge all get their layers there.

@@ -294,6 +294,7 @@ Metric<D> divided(const Spectrum<D>& s, const NaturalParams& params, double h_ma
       h[k] /= params.layers3.value_or(1);
     h[k] = std::clamp(h[k], params.h_min, h_max);
   }
+  if (params.max_anisotropy > 0) h = h.cwiseMin(params.max_anisotropy * h.minCoeff());
   return metric_from_sizes<D>(s.vectors, h);
 }
 

@@ -19,6 +19,9 @@ Result<void> check_params(const NaturalParams& p) {
   if (!(p.h_min >= 0) || !(p.h_max >= 0) || (p.h_max > 0 && p.h_min > p.h_max))
     return Error{Code::usage, "The smallest size h_min is above the largest, h_max.",
                  "Lengths are in mm; h_max = 0 means the diagonal of the part."};
+  if (p.max_anisotropy != 0 && !(p.max_anisotropy >= 1))
+    return Error{Code::usage, "The largest anisotropy must be 1 or more.",
+                 "It is the longest over the shortest size of an element."};
   return {};
 }
 

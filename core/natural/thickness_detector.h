@@ -21,10 +21,12 @@ struct NaturalParams {
   std::optional<int> layers3{};  ///< n3, for sizes beyond; unset: not divided
   double h_min = 0;              ///< mm
   double h_max = 0;              ///< mm; 0: the box diagonal
+  double max_anisotropy = 0;     ///< largest over smallest size of a wall, >= 1; 0: no bound
   int threads = 0;               ///< 0: all cores; the result does not depend on it
 };
 
-/// Errors: usage (n, n2 or n3 < 1, alpha or alpha2 < 0, h_min > h_max).
+/// Errors: usage (n, n2 or n3 < 1, alpha or alpha2 < 0, h_min > h_max, a bound of anisotropy below
+/// 1).
 Result<void> check_params(const NaturalParams& params);
 
 struct NaturalField {

@@ -260,6 +260,7 @@ std::string conformity_and_settings(const Report& r) {
                 escaped(object.name + (object.body.empty() ? "" : ", " + object.body)));
   html += row("chord tolerance", o.chord_tolerance ? short_number(*o.chord_tolerance) + " mm"
                                                    : "1/1000 of each body's diagonal");
+  if (o.max_anisotropy) html += row("anisotropy at most", short_number(*o.max_anisotropy));
   html += row("angle tolerance", short_number(o.angle_tolerance) + " rad");
   html += row("iterations at most",
               std::to_string(o.iterations) + (o.progressive ? ", with 2, 3, .. n layers" : ""));

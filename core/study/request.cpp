@@ -17,6 +17,9 @@ Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
     return usage("At least one iteration is needed.", "Ask for 1 or more; 6 is the default.");
   if (study.options.chord_tolerance && !(*study.options.chord_tolerance > 0))
     return usage("The chord tolerance must be positive.", "Leave it out for the default.");
+  if (study.options.max_anisotropy && !(*study.options.max_anisotropy >= 1))
+    return usage("The largest anisotropy must be 1 or more.",
+                 "It is the longest over the shortest size of an element.");
   std::vector<std::string> names;
   for (const Part& part : parts) names.push_back(part.name);
   for (const StudyZone& zone : study.zones) names.push_back(zone.name);
@@ -90,6 +93,7 @@ NaturalParams natural_params(const Study& study, const Part& part) {
   params.layers3 = settings.layers3;
   params.h_min = settings.h_min.value_or(1e-3 * diagonal_of(part.surface.points));
   params.h_max = settings.h_max.value_or(0);
+  params.max_anisotropy = study.options.max_anisotropy.value_or(0);
   params.threads = study.options.threads;
   return params;
 }

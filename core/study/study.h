@@ -57,9 +57,11 @@ constexpr std::string_view capture_name(Capture c) {
 /// How the mesh is made. Lengths in mm.
 struct StudyOptions {
   std::optional<double> chord_tolerance{};  ///< unset: 1e-3 of the box diagonal of each body
-  double angle_tolerance = 0.35;            ///< radians between neighbors of the tessellation
-  int iterations = 6;                       ///< adaptions at most
-  int threads = 0;                          ///< 0: all cores; the mesh does not depend on it
+  std::optional<double>
+      max_anisotropy{};           ///< longest over shortest size of a wall; unset: no bound
+  double angle_tolerance = 0.35;  ///< radians between neighbors of the tessellation
+  int iterations = 6;             ///< adaptions at most
+  int threads = 0;                ///< 0: all cores; the mesh does not depend on it
   std::uint64_t seed = 1;
   Detector detector = Detector::geometric;  ///< who finds the wall thickness
   bool progressive = false;   ///< asks 2, 3, .. n layers (4.4.2): less memory at the first peak

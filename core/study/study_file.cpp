@@ -60,6 +60,7 @@ StudyOptions read_options(const Json& json, std::string& complaint) {
   Members m(json, "options", complaint);
   m.number("chord_tolerance", options.chord_tolerance);
   m.number("angle_tolerance", options.angle_tolerance, false);
+  m.number("max_anisotropy", options.max_anisotropy);
   m.integer("iterations", options.iterations, 1);
   m.integer("threads", options.threads, 0);
   m.integer("seed", options.seed, 0);
@@ -381,6 +382,7 @@ std::string study_to_json(const Study& study) {
   Json& options = json["options"];
   if (o.chord_tolerance) options["chord_tolerance"] = *o.chord_tolerance;
   options["angle_tolerance"] = o.angle_tolerance;
+  if (o.max_anisotropy) options["max_anisotropy"] = *o.max_anisotropy;
   options["iterations"] = o.iterations;
   options["threads"] = o.threads;
   options["seed"] = o.seed;

@@ -32,6 +32,7 @@ class MeshPage : public QWidget {
   QCheckBox* settled_;
   QCheckBox* progressive_;
   QComboBox* detector_;
+  QSpinBox* anisotropy_;
   QSpinBox* seed_;
   QSpinBox* threads_;
   QSpinBox* memory_;

@@ -158,6 +158,7 @@ Result<std::string> command_line(const Study& study) {
   const StudyOptions& o = study.options;
   const StudyOptions usual;
   if (o.chord_tolerance) text += " --chord-tolerance " + number(*o.chord_tolerance);
+  if (o.max_anisotropy) text += " --max-anisotropy " + number(*o.max_anisotropy);
   if (o.angle_tolerance != usual.angle_tolerance)
     text += " --angle-tolerance " + number(o.angle_tolerance);
   if (o.iterations != usual.iterations) text += " --iterations " + std::to_string(o.iterations);

@@ -203,6 +203,23 @@ TEST(NaturalMetric, RealPartHasTheWallsItsDrawingShows) {
   EXPECT_NEAR(quantile(thickness, 0.9), 5, 0.05);
 }
 
+TEST(NaturalMetric, ABoundOfAnisotropyShortensTheLongAxesOnly) {
+  const NaturalDetector detector(box_surface({1, 1, 0.02}, {6, 6, 1}));
+  NaturalParams free, bound;
+  bound.max_anisotropy = 10;
+  for (const Vec<3>& x : {Vec<3>(0.5, 0.5, 0.01), Vec<3>(0.3, 0.7, 0), Vec<3>(0.6, 0.2, 0.015)}) {
+    const Vec<3> before = sizes<3>(detector.at(x, free).metric);
+    const Vec<3> after = sizes<3>(detector.at(x, bound).metric);
+    ASSERT_GT(before[2], 20 * before[0]);
+    EXPECT_NEAR(after[0], before[0], 1e-9);
+    EXPECT_NEAR(after[1], 10 * before[0], 1e-9);
+    EXPECT_NEAR(after[2], 10 * before[0], 1e-9);
+  }
+  bound.max_anisotropy = 0.5;
+  ASSERT_FALSE(check_params(bound).ok());
+  EXPECT_EQ(check_params(bound).error().code, Code::usage);
+}
+
 TEST(NaturalMetric, SizesStayWithinTheirBounds) {
   const NaturalDetector detector(box_surface({1, 1, 0.01}));
   NaturalParams params;
