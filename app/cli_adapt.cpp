@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <map>
+#include <optional>
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
@@ -12,6 +14,7 @@
 #include "core/metric/intersect.h"
 #include "core/optimize/adapt.h"
 #include "core/optimize/background_metric.h"
+#include "core/optimize/boundary_model.h"
 #include "core/optimize/metric_conditioning.h"
 
 namespace lamella::cli {
@@ -250,11 +253,63 @@ Result<void> tell_boundary(const SimplexMesh<3>& before, const SimplexMesh<3>& a
   return {};
 }
 
+/// Whether the .sol that goes with a .mesh written is the one read, for another mesh.
+bool overwrites_metric(const AdaptCommand& c) {
+  const auto same = [](const fs::path& a, const fs::path& b) {
+    std::error_code ec;
+    return fs::equivalent(a, b, ec);
+  };
+  const fs::path output = c.output;
+  return !c.sol.empty() && output.extension() == ".mesh" && !same(output, c.mesh) &&
+         same(fs::path(output).replace_extension(".sol"), c.sol);
+}
+
+/// What the boundary is held to through all iterations: the mesh given. Where it has borders
+/// between bodies, which follow the mesh at hand, each iteration gets its share of the tolerance
+/// instead.
+template <int D>
+class FirstBoundary {
+ public:
+  FirstBoundary(SimplexMesh<D>& mesh, AdaptParams& params, int iterations) {
+    if (iterations < 2) return;
+    if constexpr (D < 4) {
+      if (mesh.bodies.size() < 2) {
+        surface_ = own_surface<D>(mesh, params.feature_angle);
+        for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+          face_[surface_->facet_face[f]] = mesh.facet_face[f];
+        mesh.facet_face = surface_->facet_face;
+        return;
+      }
+      Eigen::AlignedBox<double, D> box;
+      for (std::size_t v = 1; v < mesh.points.size(); ++v) box.extend(mesh.points[v]);
+      params.chord_tolerance =
+          params.chord_tolerance.value_or(1e-3 * box.diagonal().norm()) / iterations;
+    }
+  }
+
+  const ReferenceSurface<D>* surface() const { return surface_ ? &*surface_ : nullptr; }
+  /// The faces as the mesh given numbers them.
+  void restore_faces(SimplexMesh<D>& mesh) const {
+    if (!surface_) return;
+    for (std::int32_t& face : mesh.facet_face)
+      if (const auto known = face_.find(face); known != face_.end()) face = known->second;
+  }
+
+ private:
+  std::optional<ReferenceSurface<D>> surface_;
+  std::map<std::int32_t, std::int32_t> face_;  // [patch]
+};
+
 template <int D>
 int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& console) {
   const Progress progress = console.progress();
   if (Result<void> known = check_output_name(c.output, D); !known)
     return console.fail(known.error());
+  if (overwrites_metric(c))
+    return console.fail({Code::usage,
+                         "\"" + c.output + "\" keeps its metric in \"" + c.sol +
+                             "\", which is read and would be lost.",
+                         "Give the output another name."});
   Result<AdaptParams> params = params_of<D>(c, mesh);
   if (!params) return console.fail(params.error());
   AskedMetric<D> asked(c, console);
@@ -262,6 +317,7 @@ int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& conso
     return console.fail(done.error());
 
   Adapted<D> current{mesh, asked.nodal(), {}};
+  const FirstBoundary<D> first(current.mesh, *params, c.iterations);
   int adapted = 0;
   bool cancelled = false;
   while (adapted < c.iterations && !cancelled) {
@@ -269,8 +325,8 @@ int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& conso
     const Progress round = progress.portion((i - 1.0) / c.iterations, 1.0 * i / c.iterations,
                                             "adaption " + std::to_string(i));
     Result<void> ready = asked.prepare(current, i, round.portion(0, 0.05));
-    Result<Adapted<D>> next = ready ? adapt<D>(current.mesh, current.metric, nullptr, *params,
-                                               round.portion(0.05, 0.9), asked.function())
+    Result<Adapted<D>> next = ready ? adapt<D>(current.mesh, current.metric, first.surface(),
+                                               *params, round.portion(0.05, 0.9), asked.function())
                                     : Result<Adapted<D>>(ready.error());
     if (!next) {
       if (next.error().code != Code::cancelled || adapted == 0) return console.fail(next.error());
@@ -292,6 +348,7 @@ int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& conso
     }
     tell_iteration(i, *report, current.report, console);
   }
+  first.restore_faces(current.mesh);
   if constexpr (D == 3) {
     if (!cancelled) {
       const Result<void> told =

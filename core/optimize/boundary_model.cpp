@@ -59,69 +59,6 @@ std::vector<Vec<D>> unit_normals(const ReferenceSurface<D>& s) {
   return normals;
 }
 
-/// The boundary of a mesh as its own reference: features are the (D-2)-faces where facets meet at
-/// more than `angle` radians, faces are the patches of one tag between them.
-template <int D>
-ReferenceSurface<D> surface_of(const SimplexMesh<D>& mesh, double angle) {
-  ReferenceSurface<D> s;
-  std::vector<std::int32_t> where(mesh.points.size(), -1);
-  for (const auto& f : mesh.facets) {
-    std::array<std::int32_t, D> g;
-    for (int k = 0; k < D; ++k) {
-      if (where[f[k]] < 0) {
-        where[f[k]] = static_cast<std::int32_t>(s.points.size());
-        s.points.push_back(mesh.points[f[k]]);
-      }
-      g[k] = where[f[k]];
-    }
-    s.facets.push_back(g);
-  }
-  std::vector<std::int32_t> patch(s.facets.size());
-  std::iota(patch.begin(), patch.end(), 0);
-  const auto root = [&patch](std::int32_t f) {
-    while (patch[f] != f) f = patch[f] = patch[patch[f]];
-    return f;
-  };
-  const auto normals = unit_normals(s);
-  const auto ridges = ridges_of<D>(s.facets);
-  const double limit = std::cos(angle);
-  std::vector<std::vector<std::int32_t>> feature_at(s.points.size());
-  for (std::size_t i = 0; i < ridges.size();) {
-    std::size_t j = i + 1;
-    while (j < ridges.size() && ridges[j].nodes == ridges[i].nodes) ++j;
-    const bool sharp =
-        j - i != 2 || normals[ridges[i].facet].dot(normals[ridges[i + 1].facet]) < limit;
-    const std::int32_t a = ridges[i].facet, b = ridges[j - 1].facet;
-    if (!sharp && mesh.facet_group[a] == mesh.facet_group[b] &&
-        mesh.facet_face[a] == mesh.facet_face[b])
-      patch[root(a)] = root(b);
-    if (sharp) {
-      if constexpr (D == 2) s.corners.push_back(ridges[i].nodes[0]);
-      if constexpr (D == 3) {
-        s.feature_edges.push_back({ridges[i].nodes[0], ridges[i].nodes[1]});
-        for (int k = 0; k < 2; ++k)
-          feature_at[ridges[i].nodes[k]].push_back(ridges[i].nodes[1 - k]);
-      }
-    }
-    i = j;
-  }
-  for (std::size_t f = 0; f < s.facets.size(); ++f)
-    s.facet_face.push_back(root(static_cast<std::int32_t>(f)));
-  if constexpr (D == 3)
-    for (std::size_t v = 0; v < s.points.size(); ++v) {
-      const auto& ends = feature_at[v];
-      if (ends.empty()) continue;
-      bool corner = ends.size() != 2;
-      if (!corner) {
-        const Vec<D> a = (s.points[ends[0]] - s.points[v]).normalized();
-        const Vec<D> b = (s.points[v] - s.points[ends[1]]).normalized();
-        corner = a.dot(b) < limit;
-      }
-      if (corner) s.corners.push_back(static_cast<std::int32_t>(v));
-    }
-  return s;
-}
-
 /// The surface in two parts: the facets on faces of the first `outer` facets of the mesh, then
 /// those on faces of its other facets up to number `given`; what lies on both is there twice.
 /// Returns where the second part begins.
@@ -303,6 +240,67 @@ template <int D>
 BoundaryModel<D>::~BoundaryModel() = default;
 
 template <int D>
+ReferenceSurface<D> own_surface(const SimplexMesh<D>& mesh, double angle) {
+  ReferenceSurface<D> s;
+  std::vector<std::int32_t> where(mesh.points.size(), -1);
+  for (const auto& f : mesh.facets) {
+    std::array<std::int32_t, D> g;
+    for (int k = 0; k < D; ++k) {
+      if (where[f[k]] < 0) {
+        where[f[k]] = static_cast<std::int32_t>(s.points.size());
+        s.points.push_back(mesh.points[f[k]]);
+      }
+      g[k] = where[f[k]];
+    }
+    s.facets.push_back(g);
+  }
+  std::vector<std::int32_t> patch(s.facets.size());
+  std::iota(patch.begin(), patch.end(), 0);
+  const auto root = [&patch](std::int32_t f) {
+    while (patch[f] != f) f = patch[f] = patch[patch[f]];
+    return f;
+  };
+  const auto normals = unit_normals(s);
+  const auto ridges = ridges_of<D>(s.facets);
+  const double limit = std::cos(angle);
+  std::vector<std::vector<std::int32_t>> feature_at(s.points.size());
+  for (std::size_t i = 0; i < ridges.size();) {
+    std::size_t j = i + 1;
+    while (j < ridges.size() && ridges[j].nodes == ridges[i].nodes) ++j;
+    const bool sharp =
+        j - i != 2 || normals[ridges[i].facet].dot(normals[ridges[i + 1].facet]) < limit;
+    const std::int32_t a = ridges[i].facet, b = ridges[j - 1].facet;
+    if (!sharp && mesh.facet_group[a] == mesh.facet_group[b] &&
+        mesh.facet_face[a] == mesh.facet_face[b])
+      patch[root(a)] = root(b);
+    if (sharp) {
+      if constexpr (D == 2) s.corners.push_back(ridges[i].nodes[0]);
+      if constexpr (D == 3) {
+        s.feature_edges.push_back({ridges[i].nodes[0], ridges[i].nodes[1]});
+        for (int k = 0; k < 2; ++k)
+          feature_at[ridges[i].nodes[k]].push_back(ridges[i].nodes[1 - k]);
+      }
+    }
+    i = j;
+  }
+  for (std::size_t f = 0; f < s.facets.size(); ++f)
+    s.facet_face.push_back(root(static_cast<std::int32_t>(f)));
+  if constexpr (D == 3)
+    for (std::size_t v = 0; v < s.points.size(); ++v) {
+      const auto& ends = feature_at[v];
+      if (ends.empty()) continue;
+      bool corner = ends.size() != 2;
+      if (!corner) {
+        const Vec<D> a = (s.points[ends[0]] - s.points[v]).normalized();
+        const Vec<D> b = (s.points[v] - s.points[ends[1]]).normalized();
+        corner = a.dot(b) < limit;
+      }
+      if (corner) s.corners.push_back(static_cast<std::int32_t>(v));
+    }
+  return s;
+}
+
+template <int D>
 BoundaryModel<D>::BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurface<D>* surface,
                                 double tolerance, double feature_angle,
                                 const std::vector<std::int32_t>& frozen_groups,
@@ -324,7 +322,7 @@ BoundaryModel<D>::BoundaryModel(const SimplexMesh<D>& mesh, const ReferenceSurfa
       first_interface_ = static_cast<std::int32_t>(sort_by_kind(reference, mesh, outer, given));
     }
     if (!surface || given < mesh.facets.size()) {
-      ReferenceSurface<D> own = surface_of(mesh, feature_angle);
+      ReferenceSurface<D> own = own_surface<D>(mesh, feature_angle);
       patch = own.facet_face;
       if (surface) {
         std::copy_n(mesh.facet_face.begin(), given, patch.begin());
@@ -631,6 +629,8 @@ std::int32_t BoundaryModel<D>::tag_on(std::int32_t t, std::int32_t facet) const 
   return t;
 }
 
+template ReferenceSurface<2> own_surface(const SimplexMesh<2>&, double);
+template ReferenceSurface<3> own_surface(const SimplexMesh<3>&, double);
 template class BoundaryModel<2>;
 template class BoundaryModel<3>;
 template class BoundaryModel<4>;

@@ -9,6 +9,12 @@
 
 namespace lamella {
 
+/// The facets of a mesh as its own reference: features are the (D-2)-faces where facets meet at
+/// more than `feature_angle` radians; faces, [facet of the mesh], are the patches between them of
+/// one group and face, D < 4.
+template <int D>
+ReferenceSurface<D> own_surface(const SimplexMesh<D>& mesh, double feature_angle);
+
 /// What the optimizer must know of the boundary: which borders between facet tags are hard, which
 /// nodes never move, and where the original surface lies.
 ///

@@ -14,8 +14,8 @@ namespace {
 
 TEST_F(Cli, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(run("--help"), 0);
-  for (const std::string name :
-       {"mesh", "adapt", "generate", "check", "info", "sample", "case", "box", "slice", "flow", "130"})
+  for (const std::string name : {"mesh", "adapt", "generate", "check", "info", "sample", "case",
+                                 "box", "slice", "flow", "130"})
     EXPECT_NE(out.find(name), std::string::npos) << name;
   EXPECT_EQ(run("mesh --help"), 0);
   EXPECT_NE(out.find("--chord-tolerance"), std::string::npos);
@@ -226,6 +226,29 @@ TEST_F(Cli, APlateGetsItsLayersAndEveryFileAgrees) {
   EXPECT_NEAR(lines().at(0)["quality"]["min"], done["quality_min"], 1e-9);
   EXPECT_EQ(run("check p.msh --min-quality 0.999"), 5);
   EXPECT_EQ(run("check p.msh --layers 200"), 4);
+}
+
+// Each iteration starts on the boundary the one before has left: what must not add up is its error.
+TEST_F(Cli, ManyIterationsStayAtTheBoundaryTheyWereGiven) {
+  ASSERT_EQ(run("sample t_junction -o t.step"), 0) << err;
+  ASSERT_EQ(run("mesh t.step -n 2 -o t.mesh"), 0) << err;
+  for (const std::string tolerance : {"0.05", "0.2"}) {
+    ASSERT_EQ(run("adapt t.mesh --metric uniform:h=3 --iterations 5 --chord-tolerance " +
+                  tolerance + " -o coarse.msh --json"),
+              0)
+        << err;
+    const std::vector<json> told = lines();
+    const auto boundary = std::find_if(told.begin(), told.end(),
+                                       [](const json& j) { return j["phase"] == "boundary"; });
+    ASSERT_NE(boundary, told.end());
+    EXPECT_LE((*boundary)["boundary_to_given"]["distance"], std::stod(tolerance));
+    EXPECT_LE((*boundary)["given_to_boundary"]["distance"], std::stod(tolerance));
+  }
+  // The metric that is read is not written over.
+  const std::string before = read_file(folder / "t.sol").value();
+  std::filesystem::copy_file(folder / "t.sol", folder / "out.sol");
+  EXPECT_EQ(run("adapt t.mesh --sol out.sol -o out.mesh"), 2);
+  EXPECT_EQ(read_file(folder / "out.sol").value(), before);
 }
 
 TEST_F(Cli, AStudySaysTheSameAsTheCommandLine) {
