@@ -9,7 +9,7 @@ if(TARGET lamella-cli)
   install(TARGETS lamella-cli)
   find_program(GZIP gzip)
   if(GZIP)
-    foreach(page lamella-cli.1 lamella-cli-flow.1)
+    foreach(page lamella-cli.1 lamella-cli-adapt.1 lamella-cli-flow.1)
       set(packed ${CMAKE_BINARY_DIR}/${page}.gz)
       add_custom_command(OUTPUT ${packed}
         COMMAND ${GZIP} -9nc ${CMAKE_CURRENT_LIST_DIR}/${page} > ${packed}
