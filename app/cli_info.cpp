@@ -142,11 +142,9 @@ void say_diagnosis(const FileDiagnosis& file, Console& console) {
 }  // namespace
 
 int run_info(const InfoCommand& c, Console& console) {
-  LoadParams load;
+  LoadParams load = load_params(c.repair, c.wrap_spacing, c.cad);
   load.chord_tolerance = c.chord_tolerance;
   load.unit = unit_factor(c.unit);
-  load.repair = repair_choice(c.repair);
-  load.wrap_spacing = c.wrap_spacing;
   const Inspection inspection = inspect_parts(c.part, load, console.progress());
   say_diagnosis(inspection.diagnosis, console);
   const Result<std::vector<Part>>& parts = inspection.parts;

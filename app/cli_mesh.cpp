@@ -228,11 +228,9 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
                   static_cast<std::size_t>(study.options.threads));
 
   const Progress progress = console.progress();
-  LoadParams load;
+  LoadParams load = load_params(c.repair, c.wrap_spacing, c.cad);
   load.chord_tolerance = study.options.chord_tolerance;
   load.angle_tolerance = study.options.angle_tolerance;
-  load.repair = repair_choice(c.repair);
-  load.wrap_spacing = c.wrap_spacing;
   Result<std::vector<Part>> parts =
       load_all(request->files, study, load, progress.portion(0, 0.05));
   if (!parts) return console.fail(parts.error());
@@ -305,10 +303,8 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
 int run_generate(const GenerateCommand& c, Console& console) {
   if (Result<void> known = check_export_name(c.output); !known) return console.fail(known.error());
   const Progress progress = console.progress();
-  LoadParams load;
+  LoadParams load = load_params(c.repair, c.wrap_spacing, c.cad);
   load.chord_tolerance = c.chord_tolerance;
-  load.repair = repair_choice(c.repair);
-  load.wrap_spacing = c.wrap_spacing;
   Study study;
   study.inputs = {{c.surface, unit_factor(c.unit)}};
   Result<std::vector<Part>> parts = load_all({c.surface}, study, load, progress.portion(0, 0.1));

@@ -64,6 +64,16 @@ void add_repair(CLI::App* app, std::string& repair, std::optional<double>& spaci
       ->check(CLI::PositiveNumber);
 }
 
+void add_cad(CLI::App* app, CadOptions& cad) {
+  app->add_option("--cad-timeout", cad.seconds, "Time that reading a STEP file may take, s [600]")
+      ->option_text("S")
+      ->check(CLI::PositiveNumber);
+  app->add_option("--cad-memory", cad.memory,
+                  "Memory that reading a STEP file may take, MB [3/4 of the machine's]")
+      ->option_text("MB")
+      ->check(CLI::PositiveNumber);
+}
+
 void add_mesher(CLI::App* app, std::string& mesher) {
   app->add_option(
          "--mesher", mesher,
@@ -371,9 +381,16 @@ void add_domain(CLI::App* m, MeshCommand& mesh) {
 
 double unit_factor(const std::string& unit) { return kUnits.at(unit); }
 
-Repair repair_choice(const std::string& name) {
-  if (name == "none") return Repair::none;
-  return name == "wrap" ? Repair::wrap : Repair::automatic;
+LoadParams load_params(const std::string& repair, const std::optional<double>& wrap_spacing,
+                       const CadOptions& cad) {
+  LoadParams load;
+  load.repair = repair == "none"   ? Repair::none
+                : repair == "wrap" ? Repair::wrap
+                                   : Repair::automatic;
+  load.wrap_spacing = wrap_spacing;
+  if (cad.seconds) load.cad_seconds = *cad.seconds;
+  load.cad_memory = cad.memory;
+  return load;
 }
 
 MesherChoice mesher_choice(const std::string& name) {
@@ -456,6 +473,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   add_groups(m, mesh);
   add_unit(m, mesh.unit);
   add_repair(m, mesh.repair, mesh.wrap_spacing);
+  add_cad(m, mesh.cad);
   add_mesher(m, mesh.mesher);
   m->add_option("--detector", mesh.detector,
                 "Who finds the thickness of walls: rays and balls inside the part (geometric), or "
@@ -480,6 +498,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   add_chord(g, generate.chord_tolerance);
   add_unit(g, generate.unit);
   add_repair(g, generate.repair, generate.wrap_spacing);
+  add_cad(g, generate.cad);
   add_mesher(g, generate.mesher);
   g->add_option("--seed", generate.seed, "Another seed gives another, equally good mesh [1]")
       ->option_text("N");
@@ -514,6 +533,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   i->add_flag("--faces", info.faces, "List the faces: number, name, area and a point on them");
   add_unit(i, info.unit);
   add_repair(i, info.repair, info.wrap_spacing);
+  add_cad(i, info.cad);
   add_json(i, info.json);
 
   SampleCommand sample;

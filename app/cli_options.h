@@ -9,6 +9,11 @@
 
 namespace lamella::cli {
 
+/// Limits of reading a STEP file.
+struct CadOptions {
+  std::optional<double> seconds, memory;  ///< s, MB
+};
+
 /// What the command line asks for, one struct a subcommand; unset options keep the study's value.
 struct MeshCommand {
   std::vector<std::string> inputs;
@@ -29,6 +34,7 @@ struct MeshCommand {
   std::optional<std::string> unit;
   std::string repair = "auto";
   std::optional<double> wrap_spacing;
+  CadOptions cad;
   std::string mesher = "auto";
   std::optional<std::string> detector;
   std::optional<std::string> domain, interfaces, capture;
@@ -59,6 +65,7 @@ struct GenerateCommand {
   std::string unit = "mm";
   std::string repair = "auto";
   std::optional<double> wrap_spacing;
+  CadOptions cad;
   std::string mesher = "auto";
   std::optional<double> chord_tolerance;
   std::uint64_t seed = 1;
@@ -83,6 +90,7 @@ struct InfoCommand {
   std::string unit = "mm";
   std::string repair = "auto";
   std::optional<double> wrap_spacing;
+  CadOptions cad;
   std::optional<double> chord_tolerance;
   bool faces = false;
   bool json = false;
@@ -142,8 +150,9 @@ std::optional<Command> parse(int argc, char** argv, int& status);
 
 /// mm per unit of --unit.
 double unit_factor(const std::string& unit);
-/// Of --repair.
-Repair repair_choice(const std::string& name);
+/// The load parameters of these options.
+LoadParams load_params(const std::string& repair, const std::optional<double>& wrap_spacing,
+                       const CadOptions& cad);
 MesherChoice mesher_choice(const std::string& name);
 
 }  // namespace lamella::cli

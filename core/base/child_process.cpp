@@ -1,6 +1,7 @@
 #include "core/base/child_process.h"
 
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -8,17 +9,24 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
+#include <utility>
+
+#include "core/base/parallel.h"
 
 namespace lamella {
 namespace {
 
-// The first byte of an answer tells what follows.
+// A message is one byte that tells what follows, and that. Those of progress come first, with a
+// length; what follows an answer reaches to the end.
+constexpr char kProgress = 'p';
 constexpr char kValue = 'v';
 constexpr char kThrown = 't';
 constexpr char kNoMemory = 'm';
@@ -38,7 +46,59 @@ void answer(int pipe, char kind, const std::string& bytes) {
   write_all(pipe, bytes.data(), bytes.size());
 }
 
-[[noreturn]] void be_the_child(int pipe, pid_t parent, const std::function<std::string()>& work) {
+struct ProgressHead {
+  char kind = kProgress;
+  std::uint8_t phase_length = 0;
+  float fraction = 0;
+};
+static_assert(sizeof(ProgressHead) + 255 < PIPE_BUF, "a message of progress goes out in one piece");
+
+/// Sends what the child's work reports, but not every small step.
+Progress progress_through(int pipe) {
+  auto told = std::make_shared<std::pair<double, std::string>>(-1, "");
+  return Progress([pipe, told](double fraction, std::string_view phase) {
+    phase = phase.substr(0, 255);
+    if (fraction < told->first + 0.002 && phase == told->second) return;
+    *told = {fraction, std::string(phase)};
+    ProgressHead head;
+    head.phase_length = static_cast<std::uint8_t>(phase.size());
+    head.fraction = static_cast<float>(fraction);
+    std::string message(reinterpret_cast<const char*>(&head), sizeof head);
+    message += phase;
+    write_all(pipe, message.data(), message.size());
+  });
+}
+
+/// Hands the messages of progress at the beginning of `bytes` on, from `at`; returns where they
+/// end.
+std::size_t tell_progress(const std::string& bytes, std::size_t at, const Progress& progress) {
+  ProgressHead head;
+  while (bytes.size() - at >= sizeof head && bytes[at] == kProgress) {
+    std::memcpy(&head, bytes.data() + at, sizeof head);
+    const std::size_t end = at + sizeof head + head.phase_length;
+    if (bytes.size() < end) break;
+    progress.portion(0, 1, bytes.substr(at + sizeof head, head.phase_length)).report(head.fraction);
+    at = end;
+  }
+  return at;
+}
+
+/// The child's limit counts the memory that it has of the caller.
+void limit_memory(std::uint64_t bytes) {
+  unsigned long long data = 0;  // pages
+  std::FILE* statm = std::fopen("/proc/self/statm", "r");
+  if (statm == nullptr) return;
+  if (std::fscanf(statm, "%*u %*u %*u %*u %*u %llu", &data) != 1) data = 0;
+  std::fclose(statm);
+  const rlim_t most = data * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + bytes;
+  rlimit now{};
+  ::getrlimit(RLIMIT_DATA, &now);
+  now.rlim_cur = std::min(most, now.rlim_max);
+  ::setrlimit(RLIMIT_DATA, &now);
+}
+
+[[noreturn]] void be_the_child(int pipe, pid_t parent, const ChildWork& work,
+                               std::uint64_t memory) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(1);
   // A crash is reported by the parent: no handler of its own, no core file.
@@ -47,8 +107,10 @@ void answer(int pipe, char kind, const std::string& bytes) {
   ::setrlimit(RLIMIT_CORE, &none);
   if (const int nothing = ::open("/dev/null", O_RDWR); nothing >= 0)
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nothing, stream);
+  if (memory > 0) limit_memory(memory);
+  without_threads = true;
   try {
-    answer(pipe, kValue, work());
+    answer(pipe, kValue, work(progress_through(pipe)));
   } catch (const std::bad_alloc&) {
     answer(pipe, kNoMemory, "");
   } catch (const std::exception& e) {
@@ -107,7 +169,8 @@ Error no_memory() {
   return {Code::memory, "it ran out of memory.", "Use a coarser surface, or more memory."};
 }
 
-Result<std::string> judge(int status, std::string bytes) {
+/// What a child that ended with `status` answered, `at` being where its answer begins.
+Result<std::string> judge(int status, std::string bytes, std::size_t at) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     if (signal == SIGKILL) return no_memory();  // we did not, so the system did
@@ -115,19 +178,20 @@ Result<std::string> judge(int status, std::string bytes) {
     return Error{Code::failed,
                  std::string("it crashed (") + (text ? text : "unknown signal") + ").", ""};
   }
-  if (WEXITSTATUS(status) != 0 || bytes.empty())
+  if (WEXITSTATUS(status) != 0 || bytes.size() == at)
     return Error{Code::failed,
                  "it ended early (exit code " + std::to_string(WEXITSTATUS(status)) + ").", ""};
-  const char kind = bytes[0];
-  bytes.erase(0, 1);
+  const char kind = bytes[at];
+  bytes.erase(0, at + 1);
   if (kind == kNoMemory) return no_memory();
   if (kind == kThrown) return Error{Code::failed, std::move(bytes), ""};
+  if (kind != kValue) return Error{Code::failed, "it gave no answer.", ""};
   return bytes;
 }
 
 }  // namespace
 
-Result<std::string> run_in_child(const std::function<std::string()>& work, double time_limit,
+Result<std::string> run_in_child(const ChildWork& work, const ChildLimits& limits,
                                  const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   if (progress.cancelled()) return cancelled_error();
@@ -139,7 +203,7 @@ Result<std::string> run_in_child(const std::function<std::string()>& work, doubl
   const pid_t pid = ::fork();
   if (pid == 0) {
     ::close(ends[0]);
-    be_the_child(ends[1], parent, work);
+    be_the_child(ends[1], parent, work, limits.bytes);
   }
   const int why = errno;
   ::close(ends[1]);
@@ -151,15 +215,18 @@ Result<std::string> run_in_child(const std::function<std::string()>& work, doubl
   ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
   Child child(pid, ends[0]);
   std::string bytes;
+  std::size_t at = 0;
   while (!child.drain(bytes)) {
+    at = tell_progress(bytes, at, progress);
     if (progress.cancelled()) return cancelled_error();
-    if (std::chrono::duration<double>(Clock::now() - start).count() > time_limit) {
+    if (std::chrono::duration<double>(Clock::now() - start).count() > limits.seconds) {
       char text[64];
-      std::snprintf(text, sizeof text, "it found no end within %g s.", time_limit);
+      std::snprintf(text, sizeof text, "it found no end within %g s.", limits.seconds);
       return Error{Code::failed, text, ""};
     }
   }
-  return judge(child.status(), std::move(bytes));
+  at = tell_progress(bytes, at, progress);
+  return judge(child.status(), std::move(bytes), at);
 }
 
 }  // namespace lamella

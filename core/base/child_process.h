@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -8,15 +9,23 @@
 
 namespace lamella {
 
+struct ChildLimits {
+  double seconds = 0;       ///< after which the child is ended
+  std::uint64_t bytes = 0;  ///< it may allocate beyond what the caller has; 0: no limit
+};
+
+using ChildWork = std::function<std::string(const Progress&)>;
+
 /// Runs `work` in a forked copy of this process and returns the bytes it returns, so that a crash
 /// or an endless loop in someone else's library ends there and not here. The copy has the memory of
-/// the caller but none of its other threads: `work` must wait for none, neither TBB's nor a lock
-/// that another thread may hold. What it prints is lost; nothing it changes comes back.
+/// the caller but none of its other threads: `parallel_each` works in place there, and `work` must
+/// wait for no lock that another thread may hold. What it prints is lost; nothing it changes comes
+/// back but the progress it reports.
 ///
-/// Errors: failed (it crashed, threw, left early, or took more than `time_limit` seconds; the
-/// message is a clause beginning with "it", or what the exception says), memory (the system killed
-/// it, or it found none), cancelled. The child is gone when this returns.
-Result<std::string> run_in_child(const std::function<std::string()>& work, double time_limit,
+/// Errors: failed (it crashed, threw, left early, or took too long; the message is a clause
+/// beginning with "it", or what the exception says), memory (the system killed it, or it found
+/// none), cancelled. The child is gone when this returns.
+Result<std::string> run_in_child(const ChildWork& work, const ChildLimits& limits,
                                  const Progress& progress);
 
 }  // namespace lamella

@@ -13,6 +13,10 @@
 
 namespace lamella {
 
+/// True in a process forked from one with threads: it has none of them, nor can it make new ones
+/// safely, and `parallel_each` works in place.
+inline bool without_threads = false;
+
 /// An arena of `threads` threads (0: all cores).
 inline tbb::task_arena thread_arena(int threads) {
   const int cores = tbb::info::default_concurrency();
@@ -25,6 +29,11 @@ inline tbb::task_arena thread_arena(int threads) {
 template <class Work>
 bool parallel_each(std::size_t count, int threads, const Progress& progress, Work&& work,
                    std::size_t grain = 64) {
+  if (without_threads) {
+    for (std::size_t i = 0; i < count && !progress.cancelled(); ++i) work(i);
+    if (!progress.cancelled()) progress.report(1);
+    return !progress.cancelled();
+  }
   std::atomic<std::size_t> done{0};
   thread_arena(threads).execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {

@@ -4,8 +4,7 @@
 #include <cctype>
 #include <cstdio>
 
-#include "core/cad/occt_guard.h"
-#include "core/cad/step_reader.h"
+#include "core/cad/step_child.h"
 #include "core/geometry/improve_triangles.h"
 #include "core/geometry/self_intersection.h"
 #include "core/geometry/soup.h"
@@ -251,9 +250,7 @@ Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const Load
 Result<std::vector<Part>> load_step(const std::filesystem::path& file, const LoadParams& params,
                                     FileDiagnosis* diagnosis, const Progress& progress) {
   StepContent content;
-  Result<void> done = guarded(file.filename().string(), [&] {
-    return read_step(file, params, progress.portion(0, 0.9), content);
-  });
+  const Result<void> done = read_step_in_child(file, params, progress.portion(0, 0.9), content);
   if (diagnosis) {
     diagnosis->free_shells = content.free_shells;
     diagnosis->free_faces = content.free_faces;
@@ -272,7 +269,7 @@ Result<std::vector<Part>> load_step(const std::filesystem::path& file, const Loa
       diagnosis->bodies.push_back(std::move(found));
     }
     if (body.refusal && params.repair == Repair::none) return about(file, *body.refusal);
-    if (!body.refusal && params.repair != Repair::wrap) {
+    if (!body.refusal && body.rough.facets.empty() && params.repair != Repair::wrap) {
       parts.push_back(std::move(body.part));
       continue;
     }
@@ -299,6 +296,9 @@ Result<std::vector<Part>> load(const std::filesystem::path& file, const LoadPara
   }
   if (params.wrap_spacing && !(*params.wrap_spacing > 0)) {
     return Error{Code::usage, "the spacing of a wrap must be positive", "Give a length in mm."};
+  }
+  if (!(params.cad_seconds > 0) || (params.cad_memory && !(*params.cad_memory > 0))) {
+    return Error{Code::usage, "the limits of reading must be positive", ""};
   }
   if (!(params.angle_tolerance > 0) || !(params.unit > 0)) {
     return Error{Code::usage, "the angle tolerance and the unit must be positive", ""};

@@ -24,12 +24,15 @@ struct LoadParams {
   Repair repair = Repair::automatic;
   std::optional<double> wrap_spacing{};  ///< mm between the grid planes of a wrap; unset: 1/160 of
                                          ///< the diagonal, finer where walls would be lost
+  double cad_seconds = 600;              ///< that reading a STEP file may take in its own process
+  std::optional<double> cad_memory{};    ///< MB that it may take; unset: 3/4 of the machine's
 };
 
 /// The bodies of a STEP (.step, .stp) or STL (.stl) file, one a solid, in mm. The file is not
 /// changed.
 /// Errors: io (missing, unreadable), bad_input (empty, not STEP/STL, no solid, open shell), each
-/// naming the file, the finding and what to try; cancelled.
+/// naming the file, the finding and what to try; failed and memory (the CAD library crashed, or
+/// went beyond a limit: it runs in a process of its own); cancelled.
 Result<std::vector<Part>> load_parts(const std::filesystem::path& file,
                                      const LoadParams& params = {}, const Progress& progress = {});
 

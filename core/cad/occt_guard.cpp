@@ -7,8 +7,10 @@
 #include <OSD.hxx>
 #include <Standard_ErrorHandler.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <exception>
 #include <mutex>
+#include <new>
 
 namespace lamella {
 namespace {
@@ -46,16 +48,33 @@ Error crashed(const std::string& subject, const std::string& reason) {
           "The model is damaged; export it again, or as another format."};
 }
 
+Error no_memory(const std::string& subject) {
+  return {Code::memory, subject + ": the CAD library ran out of memory",
+          "Allow it more memory, or export the parts one by one."};
+}
+
 }  // namespace
 
+OcctLock::OcctLock() { occt_mutex().lock(); }
+OcctLock::~OcctLock() { occt_mutex().unlock(); }
+
 Result<void> guarded(const std::string& subject, const std::function<Result<void>()>& action) {
-  const std::scoped_lock lock(occt_mutex());
+  const OcctLock lock;
+  return guarded_alone(subject, action);
+}
+
+Result<void> guarded_alone(const std::string& subject,
+                           const std::function<Result<void>()>& action) {
   // OCCT would write its remarks to standard output, which belongs to the caller.
   Message::DefaultMessenger()->ChangePrinters().Clear();
   const SignalScope signals;
   try {
     OCC_CATCH_SIGNALS
     return action();
+  } catch (const Standard_OutOfMemory&) {
+    return no_memory(subject);
+  } catch (const std::bad_alloc&) {
+    return no_memory(subject);
   } catch (const Standard_Failure& failure) {
     const char* text = failure.GetMessageString();
     return crashed(subject,

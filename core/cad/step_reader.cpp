@@ -32,6 +32,7 @@
 #include "core/base/atomic_file.h"
 #include "core/cad/occt_progress.h"
 #include "core/cad/tessellate.h"
+#include "core/cad/tessellated_step.h"
 
 namespace lamella {
 namespace {
@@ -181,10 +182,23 @@ Error no_solid(const std::filesystem::path& file, const std::string& text, const
     return bad(file, "no solid: the file holds only " + what, hint);
   }
   if (text.find("TESSELLATED_") != std::string::npos) {
-    return bad(file, "no solid: the file holds tessellated geometry only",
+    return bad(file, "no solid: the file holds tessellated geometry only, and none that is a body",
                "Export the exact (B-rep) geometry, or an STL.");
   }
   return bad(file, "no solid: the file holds no shape", "Export the part again.");
+}
+
+/// Bodies without exact geometry come as the triangles that the file holds.
+void add_tessellated(const std::string& text, const std::string& fallback, StepContent& content) {
+  std::vector<TessellatedBody> bodies = tessellated_bodies(text);
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    StepBody& body = content.bodies.emplace_back();
+    body.part.name = bodies[k].name.empty() ? fallback : bodies[k].name;
+    if (bodies.size() > 1) body.part.name += " " + std::to_string(k + 1);
+    body.part.notes.push_back("No exact geometry: its " + counted(bodies[k].soup.size(), "facet") +
+                              " are those of the file.");
+    body.rough = merge_exact(bodies[k].soup);
+  }
 }
 
 /// Sews faces into solids, with a tolerance no wider than needed; what does not close comes as it
@@ -315,6 +329,10 @@ Result<void> read_step(const std::filesystem::path& file, const LoadParams& para
   if (found.empty() && params.repair != Repair::none)
     found = sew(loose.all, file.stem().string(), progress);
   if (progress.cancelled()) return cancelled_error();
+  if (found.empty() && loose.all.empty()) {
+    add_tessellated(*text, file.stem().string(), content);
+    if (!content.bodies.empty()) return {};
+  }
   if (found.empty()) return no_solid(file, *text, loose);
   make_names_unique(found, file.stem().string());
   if (had_solids && loose.shells + loose.faces > 0) {

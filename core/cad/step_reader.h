@@ -21,9 +21,10 @@ struct SolidInfo {
   std::vector<std::string> notes;
 };
 
-/// One solid, tessellated; or, where that has no sound surface, why and its triangles as they came.
+/// One solid, tessellated; or, where that has no sound surface, why and its triangles as they came;
+/// or, where the file has no exact geometry, its triangles alone.
 struct StepBody {
-  Part part;  ///< without a surface when refused
+  Part part;  ///< without a surface where there are but triangles
   std::optional<Error> refusal;
   Triangles rough;
   bool exact_shape_valid = true;  ///< by the kernel's own check
@@ -37,8 +38,8 @@ struct StepContent {
 
 /// Reads and tessellates the leaves of the assembly of a STEP file, in mm. Free shells and faces
 /// beside solids are left out, with a note; without any solid they are sewn, with a note, unless
-/// `params.repair` is none. Must run inside `guarded`. What was found before an error is in
-/// `content`. Errors: io; bad_input (empty, not STEP, truncated, no shape); cancelled.
+/// `params.repair` is none. Must run inside `guarded` or `guarded_alone`. What was found before an
+/// error is in `content`. Errors: io; bad_input (empty, not STEP, truncated, no shape); cancelled.
 Result<void> read_step(const std::filesystem::path& file, const LoadParams& params,
                        const Progress& progress, StepContent& content);
 

@@ -320,6 +320,21 @@ void compare_fields(const SimplexMesh<3>& mesh, const MeshFields& fields, const 
   proof.agrees = proof.finding.empty();
 }
 
+/// The first element or facet that is none: a node of it is unknown, or there twice. Empty if none.
+template <std::size_t N>
+std::string fault_of(const std::vector<std::array<NodeId, N>>& simplices, std::size_t nodes,
+                     const std::string& what) {
+  for (std::size_t k = 0; k < simplices.size(); ++k) {
+    auto v = simplices[k];
+    std::sort(v.begin(), v.end());
+    if (v[0] < 1 || static_cast<std::size_t>(v[N - 1]) >= nodes)
+      return what + " " + std::to_string(k + 1) + " names a node that is not there.";
+    if (std::adjacent_find(v.begin(), v.end()) != v.end())
+      return what + " " + std::to_string(k + 1) + " has one node twice.";
+  }
+  return {};
+}
+
 }  // namespace
 
 fs::path sidecar_of(const fs::path& file) { return file.string() + ".json"; }
@@ -383,6 +398,12 @@ Result<MeshContent> read_mesh_file(const MeshFormat& format, const fs::path& fil
   for (const Vec<3>& x : content->mesh.points)
     if (!x.allFinite())
       return Error{Code::bad_input, "\"" + file.string() + "\": a coordinate is no number.",
+                   "The file is damaged; write it again."};
+  for (const auto& finding :
+       {fault_of(content->mesh.elements, content->mesh.points.size(), "Element"),
+        fault_of(content->mesh.facets, content->mesh.points.size(), "Facet")})
+    if (!finding.empty())
+      return Error{Code::bad_input, "\"" + file.string() + "\": " + finding,
                    "The file is damaged; write it again."};
   if (Result<void> done = complete(*content, file); !done) return done.error();
   return content;

@@ -1,11 +1,11 @@
 #include "core/netgen/netgen_mesher.h"
 
-#include <cstring>
 #include <exception>
 #include <ostream>
 #include <sstream>
 #include <stdexcept>
 
+#include "core/base/bytes.h"
 #include "core/base/child_process.h"
 #include "core/optimize/certificate.h"
 
@@ -39,28 +39,6 @@ std::string complaint(const std::string& text) {
   for (std::string line; std::getline(in, line);)
     if (const auto at = line.find("ERROR: "); at != std::string::npos) last = line.substr(at + 7);
   return last.empty() ? last : last + ".";
-}
-
-template <class T>
-void put(std::string& bytes, const std::vector<T>& values) {
-  const std::uint64_t count = values.size();
-  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  bytes.append(reinterpret_cast<const char*>(values.data()), count * sizeof(T));
-}
-
-/// Takes from `bytes` at `at` what `put` wrote; false when they end before.
-template <class T>
-bool take(const std::string& bytes, std::size_t& at, std::vector<T>& values) {
-  std::uint64_t count = 0;
-  if (bytes.size() - at < sizeof count) return false;
-  std::memcpy(&count, bytes.data() + at, sizeof count);
-  at += sizeof count;
-  if ((bytes.size() - at) / sizeof(T) < count) return false;
-  values.resize(count);
-  if (count > 0)
-    std::memcpy(static_cast<void*>(values.data()), bytes.data() + at, count * sizeof(T));
-  at += count * sizeof(T);
-  return true;
 }
 
 /// The library numbers the used points of a surface from 1, in their order.
@@ -124,10 +102,10 @@ std::string run_netgen(const ReferenceSurface<3>& surface) {
     nglib::Ng_GetVolumeElement(library.get(), i, v);
     tetrahedra.push_back({v[0], v[1], v[2], v[3]});
   }
-  std::string bytes;
-  put(bytes, inside);
-  put(bytes, tetrahedra);
-  return bytes;
+  ByteWriter bytes;
+  bytes.array(inside);
+  bytes.array(tetrahedra);
+  return bytes.take();
 }
 
 namespace {
@@ -136,9 +114,10 @@ namespace {
 Result<SimplexMesh<3>> mesh_of(const std::string& bytes, const ReferenceSurface<3>& surface) {
   std::vector<Vec<3>> inside;
   std::vector<Tetrahedron> tetrahedra;
-  std::size_t at = 0;
-  if (!take(bytes, at, inside) || !take(bytes, at, tetrahedra) || at != bytes.size())
-    return failure("its answer is cut off.");
+  ByteReader reader(bytes);
+  reader.array(inside);
+  reader.array(tetrahedra);
+  if (!reader.done()) return failure("its answer is cut off.");
   SimplexMesh<3> mesh;
   mesh.points.insert(mesh.points.end(), surface.points.begin(), surface.points.end());
   std::vector<NodeId> node = nodes_of_library(surface);
@@ -172,8 +151,8 @@ class NetgenMesher final : public VolumeMesher {
                                   const Progress& progress) const override {
     if (surface.facets.empty()) return Error{Code::bad_input, "The surface has no triangle.", ""};
     progress.report(0);
-    Result<std::string> bytes =
-        run_in_child([&] { return work_(surface); }, params_.time_limit, progress);
+    Result<std::string> bytes = run_in_child([&](const Progress&) { return work_(surface); },
+                                             {.seconds = params_.time_limit}, progress);
     if (!bytes) {
       if (bytes.error().code == Code::cancelled) return bytes.error();
       Error error = failure(bytes.error().message);

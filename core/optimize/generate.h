@@ -24,7 +24,7 @@ class VolumeMesher {
 
 struct GenerateParams {
   std::uint64_t seed = 1;
-  double time_limit = 120;  ///< seconds after which it gives up with Code::failed
+  double time_limit = 120;  ///< processor seconds after which it gives up, Code::failed
 };
 
 /// Algorithm 2.1: the mesh of the domain bounded by `surface`, by topological optimization towards

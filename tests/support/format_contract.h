@@ -7,6 +7,7 @@
 #include "core/base/atomic_file.h"
 #include "core/io/mesh_file.h"
 #include "core/mesh/validate.h"
+#include "tests/support/damage.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/three_bodies.h"
 
@@ -127,6 +128,35 @@ TEST_P(FormatContract, CutFilesAreRefusedNotTaken) {
     }
     EXPECT_EQ(cut.error().code, Code::bad_input) << share;
     EXPECT_NE(cut.error().message.find("m" + format().endings.front()), std::string::npos);
+  }
+}
+
+TEST_P(FormatContract, ADamagedFileIsAnErrorOrAMesh) {
+  if (format().boundary_only) return;
+  const ThreeBodies made;
+  ASSERT_TRUE(write_mesh_file(format(), made.mesh, made.with_metric(), file()).ok());
+  // A format may be several files, of which one is damaged.
+  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
+    if (entry.is_regular_file()) files.emplace_back(entry.path(), read_file(entry.path()).value());
+  std::sort(files.begin(), files.end());
+  std::mt19937 random(1);
+  // VTK and the others believe lengths of any size: seconds a file.
+  const bool library = format().name == "vtu" || format().name == "exodus" ||
+                       format().name == "med" || format().name == "cgns";
+  const int rounds = damage_rounds(library ? 5 : 100);
+  for (int k = 0; k < rounds; ++k) {
+    const auto& [path, bytes] = files[random() % files.size()];
+    ASSERT_TRUE(write_file(path, damaged(bytes, random)).ok());
+    const Result<MeshContent> content = read_mesh_file(format(), file());
+    if (content) {
+      const MeshReport found = inspect<3>(content->mesh).value();
+      EXPECT_EQ(found.bad_arrays + found.bad_indices + found.bad_points, 0u)
+          << "round " << k << ": " << found.first_finding;
+    } else {
+      EXPECT_FALSE(content.error().message.empty()) << "round " << k;
+    }
+    ASSERT_TRUE(write_file(path, bytes).ok());
   }
 }
 

@@ -12,6 +12,10 @@
 #include <new>
 #include <stdexcept>
 #include <thread>
+#include <utility>
+#include <vector>
+
+#include "core/base/parallel.h"
 
 namespace lamella {
 namespace {
@@ -25,7 +29,7 @@ void expect_no_child_left() {
 
 Error error_of(const std::function<std::string()>& work, double limit = kLong,
                const Progress& progress = {}) {
-  const auto result = run_in_child(work, limit, progress);
+  const auto result = run_in_child([&](const Progress&) { return work(); }, {limit}, progress);
   expect_no_child_left();
   EXPECT_FALSE(result.ok());
   return result.ok() ? Error{} : result.error();
@@ -34,18 +38,19 @@ Error error_of(const std::function<std::string()>& work, double limit = kLong,
 TEST(ChildProcess, HandsBackEveryByte) {
   std::string bytes(3'000'000, '\0');  // many times what a pipe holds
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7 + i / 251);
-  const auto result = run_in_child([&] { return bytes; }, kLong, {});
+  const auto result = run_in_child([&](const Progress&) { return bytes; }, {kLong}, {});
   ASSERT_TRUE(result.ok()) << result.error().message;
   EXPECT_EQ(*result, bytes);
   expect_no_child_left();
-  const auto nothing = run_in_child([] { return std::string(); }, kLong, {});
+  const auto nothing = run_in_child([](const Progress&) { return std::string(); }, {kLong}, {});
   ASSERT_TRUE(nothing.ok());
   EXPECT_EQ(*nothing, "");
 }
 
 TEST(ChildProcess, WorksOnACopy) {
   int here = 1;
-  const auto result = run_in_child([&] { return std::to_string(++here); }, kLong, {});
+  const auto result =
+      run_in_child([&](const Progress&) { return std::to_string(++here); }, {kLong}, {});
   ASSERT_TRUE(result.ok());
   EXPECT_EQ(*result, "2");
   EXPECT_EQ(here, 1);
@@ -113,17 +118,68 @@ TEST(ChildProcess, KillsOnCancel) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
+TEST(ChildProcess, EndsWhatTakesTooMuchMemory) {
+  const auto work = [](const Progress&) {
+    return std::string(1, std::string(60'000'000, 'x').back());
+  };
+  const auto refused = run_in_child(work, {.seconds = kLong, .bytes = 30'000'000}, {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, Code::memory);
+  EXPECT_TRUE(run_in_child(work, {.seconds = kLong, .bytes = 120'000'000}, {}).ok());
+  // What the caller has itself does not count.
+  const std::string much(200'000'000, 'y');
+  EXPECT_TRUE(run_in_child(work, {.seconds = kLong, .bytes = 120'000'000}, {}).ok());
+  EXPECT_EQ(much.size(), 200'000'000u);
+}
+
+TEST(ChildProcess, PassesProgressOn) {
+  std::vector<std::pair<double, std::string>> told;
+  const Progress progress([&](double fraction, std::string_view phase) {
+    told.emplace_back(fraction, std::string(phase));
+  });
+  const auto result = run_in_child(
+      [](const Progress& through) {
+        through.portion(0, 0.5, "first").report(0.5);
+        through.portion(0.5, 1, "second").report(1);
+        return std::string("pv");  // an answer may begin like a message
+      },
+      {kLong}, progress.portion(0, 0.5, "outer"));
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(*result, "pv");
+  const std::vector<std::pair<double, std::string>> expected = {{0.125, "first"}, {0.5, "second"}};
+  EXPECT_EQ(told, expected);
+}
+
+TEST(ChildProcess, WorksInPlaceInParallelLoops) {
+  std::vector<int> squares(1000);
+  const auto square = [&](std::size_t i) { squares[i] = static_cast<int>(i * i); };
+  parallel_each(squares.size(), 0, {}, square);  // the pool has its threads now
+  const auto result = run_in_child(
+      [&](const Progress& through) {
+        squares.assign(squares.size(), 0);
+        parallel_each(squares.size(), 0, through, square);
+        std::string bytes;
+        for (const int s : squares) bytes += std::to_string(s) + " ";
+        return bytes;
+      },
+      {kLong}, {});
+  std::string expected;
+  for (const int s : squares) expected += std::to_string(s) + " ";
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(*result, expected);
+}
+
 TEST(ChildProcess, LosesWhatIsPrinted) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   const auto result = run_in_child(
-      [] {
+      [](const Progress&) {
         std::printf("noise");
         std::fprintf(stderr, "noise");
         std::fflush(nullptr);
         return std::string("done");
       },
-      kLong, {});
+      {kLong}, {});
   EXPECT_TRUE(result.ok());
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
