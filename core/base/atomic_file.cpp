@@ -5,6 +5,9 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 
@@ -24,6 +27,21 @@ bool flush_to_disk(const fs::path& path, int flags) {
   const bool good = ::fsync(descriptor) == 0;
   ::close(descriptor);
   return good;
+}
+
+/// Makes FILE.bak of the file, by way of `between`; the file itself stays.
+Result<void> back_up(const fs::path& file, const fs::path& between) {
+  std::error_code ec;
+  if (!fs::is_regular_file(file, ec)) return {};
+  fs::create_hard_link(file, between, ec);
+  // Not every file system has links.
+  if (ec && (!fs::copy_file(file, between, fs::copy_options::overwrite_existing, ec) ||
+             !flush_to_disk(between, O_RDONLY)))
+    return io_error(file, "no backup could be made of it (" + ec.message() + ")",
+                    "Check the space on the disk.");
+  fs::rename(between, file.string() + ".bak", ec);
+  if (ec) return io_error(file, "no backup could be made of it (" + ec.message() + ")", "");
+  return {};
 }
 
 }  // namespace
@@ -58,18 +76,31 @@ Result<AtomicFile> AtomicFile::create(const fs::path& target) {
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : target_(std::move(other.target_)),
       temporary_(std::move(other.temporary_)),
+      beside_(std::move(other.beside_)),
       stream_(std::move(other.stream_)) {
   other.temporary_.clear();
 }
 
+fs::path AtomicFile::beside(const std::string& ending) const {
+  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
+  // A pipe's own name is no place for further files, its folder is.
+  const std::string stem =
+      temporary_ == target_ ? "." + target_.filename().string() + "." + std::to_string(::getpid())
+                            : temporary_.filename().string();
+  beside_.push_back(folder / (stem + ending));
+  return beside_.back();
+}
+
 AtomicFile::~AtomicFile() {
+  std::error_code ignored;
+  for (const fs::path& file : beside_) fs::remove(file, ignored);
   if (temporary_.empty() || temporary_ == target_) return;
   stream_.close();
   std::error_code ec;
   fs::remove(temporary_, ec);
 }
 
-Result<void> AtomicFile::commit() {
+Result<void> AtomicFile::commit(bool keep_backup) {
   const std::string hint = "Check the space on the disk.";
   errno = 0;
   stream_.close();
@@ -77,6 +108,8 @@ Result<void> AtomicFile::commit() {
   if (temporary_ == target_) return {};
   if (!flush_to_disk(temporary_, O_RDONLY))
     return io_error(target_, std::string("writing failed (") + std::strerror(errno) + ")", hint);
+  if (keep_backup)
+    if (Result<void> kept = back_up(target_, beside(".bak")); !kept) return kept;
   std::error_code ec;
   fs::rename(temporary_, target_, ec);
   if (ec) return io_error(target_, "cannot be replaced (" + ec.message() + ")", "");
@@ -84,6 +117,27 @@ Result<void> AtomicFile::commit() {
   // The name is durable only once the folder is; a file system that cannot do that is no failure.
   flush_to_disk(target_.has_parent_path() ? target_.parent_path() : ".", O_RDONLY | O_DIRECTORY);
   return {};
+}
+
+void remove_leftovers(const fs::path& target) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  const std::string name = target.filename().string() + ".";
+  std::error_code ec;
+  std::vector<fs::path> gone;
+  for (const auto& entry : fs::directory_iterator(folder, ec)) {
+    const std::string file = entry.path().filename().string();
+    const std::size_t dots = file.find_first_not_of('.');
+    if (dots == 0 || dots == file.npos || file.compare(dots, name.size(), name) != 0) continue;
+    const std::string rest = file.substr(dots + name.size());
+    const long process = std::strtol(rest.c_str(), nullptr, 10);
+    if (process <= 0 || rest.find(".part") == rest.npos) continue;
+    if (::kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH) continue;
+    // On a shared disk the process may be one of another machine.
+    const auto written = fs::last_write_time(entry.path(), ec);
+    if (ec || fs::file_time_type::clock::now() - written < std::chrono::minutes(10)) continue;
+    gone.push_back(entry.path());
+  }
+  for (const fs::path& file : gone) fs::remove(file, ec);
 }
 
 Result<void> write_file(const fs::path& target, std::string_view bytes) {

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.h"
 
@@ -24,14 +26,23 @@ class AtomicFile {
   const std::filesystem::path& temporary() const { return temporary_; }
   /// Stream to the temporary file, binary, open since `create`.
   std::ostream& stream() { return stream_; }
-  /// Errors: io (disk full, renaming failed); the temporary file is gone then.
-  Result<void> commit();
+  /// Where something more may be put for the time of writing: a name beside `temporary`, with this
+  /// ending, that goes with it.
+  std::filesystem::path beside(const std::string& ending) const;
+  /// Errors: io (disk full, renaming failed); the temporary file is gone then. With `keep_backup`
+  /// an older target becomes TARGET.bak; at no moment is there no target.
+  Result<void> commit(bool keep_backup = false);
 
  private:
   AtomicFile() = default;
   std::filesystem::path target_, temporary_;
+  mutable std::vector<std::filesystem::path> beside_;
   std::ofstream stream_;
 };
+
+/// Removes what programs that were killed while they wrote the target have left beside it: their
+/// process is gone, and nobody wrote to it for ten minutes.
+void remove_leftovers(const std::filesystem::path& target);
 
 /// Writes the bytes in one step. Errors: as AtomicFile.
 Result<void> write_file(const std::filesystem::path& target, std::string_view bytes);

@@ -71,10 +71,13 @@ struct StudyOptions {
   Capture capture = Capture::distance;        ///< of fuzzy interfaces
 };
 
-/// A STEP or STL file.
+/// A STEP or STL file, and what it held when it was read.
 struct StudyInput {
-  std::string file;  ///< relative to the study's folder, or absolute
-  double unit = 1;   ///< mm per unit of an STL, which names none
+  std::string file;       ///< relative to the study's folder, or absolute
+  double unit = 1;        ///< mm per unit of an STL, which names none
+  std::string sha256{};   ///< of its content; empty: not known
+  std::uint64_t bytes{};  ///< its size, where the hash is known
+  std::string entry{};    ///< of the copy within the project file; empty: none
 
   bool operator==(const StudyInput&) const = default;
 };
@@ -101,6 +104,7 @@ struct Study {
   std::vector<SizingObject> sizing;   ///< on top of the natural metric, in this order
   std::vector<BoundaryGroup> groups;  ///< named parts of the boundary
   std::vector<CutPlane> cuts;         ///< for the eye only
+  bool embed_inputs = false;          ///< a project file holds copies of the inputs
 };
 
 /// The settings of the part called `name`: its entry, or the defaults of BodySettings.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/atomic_file.h"
+#include "core/base/sha256.h"
 #include "core/base/version.h"
 #include "core/study/json_members.h"
 #include "core/study/zone_json.h"
@@ -12,8 +13,6 @@ namespace lamella {
 namespace {
 
 using lamella::json_of;
-
-constexpr int kSchema = 1;
 
 /// Names of the alternatives, in the order of their variants.
 const std::vector<std::string> kShapes = {"body", "sphere", "box", "cylinder", "faces"};
@@ -213,6 +212,14 @@ StudyInput read_input(const Json& json, std::size_t index, std::string& complain
   m.text("file", input.file);
   if (input.file.empty()) m.complain("file", "is needed");
   m.number("unit", input.unit, false);
+  m.text("sha256", input.sha256);
+  const auto hexadecimal = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  if (!input.sha256.empty() &&
+      (input.sha256.size() != 64 ||
+       !std::all_of(input.sha256.begin(), input.sha256.end(), hexadecimal)))
+    m.complain("sha256", "must be 64 hexadecimal digits");
+  m.integer("bytes", input.bytes, 0);
+  m.text("entry", input.entry);
   m.finish();
   return input;
 }
@@ -346,18 +353,29 @@ Json json_of(const BoundaryGroup& group) {
   return json;
 }
 
+Json json_of(const StudyInput& input) {
+  Json json;
+  json["file"] = input.file;
+  if (input.unit != 1) json["unit"] = input.unit;
+  if (!input.sha256.empty()) {
+    json["sha256"] = input.sha256;
+    json["bytes"] = input.bytes;
+  }
+  if (!input.entry.empty()) json["entry"] = input.entry;
+  return json.size() == 1 ? Json(input.file) : json;
+}
+
 }  // namespace
 
 std::string study_to_json(const Study& study) {
   Json json;
-  json["schema"] = kSchema;
+  json["schema"] = kStudySchema;
   json["program"] = "Lamella " + version();
   json["name"] = study.name;
   json["unit"] = "mm";
   json["inputs"] = Json::array();
-  for (const StudyInput& input : study.inputs)
-    json["inputs"].push_back(input.unit == 1 ? Json(input.file)
-                                             : Json({{"file", input.file}, {"unit", input.unit}}));
+  for (const StudyInput& input : study.inputs) json["inputs"].push_back(json_of(input));
+  if (study.embed_inputs) json["embed_inputs"] = true;
   if (!study.left_out.empty()) json["left_out"] = study.left_out;
   json["bodies"] = Json::array();
   for (const BodySettings& body : study.bodies) {
@@ -404,7 +422,30 @@ std::string study_to_json(const Study& study) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Result<Study> study_from_json(const std::string& text, const std::string& where) {
+std::string mesh_key(Study study) {
+  study.name.clear();
+  study.embed_inputs = false;
+  study.options.threads = 0;
+  study.options.memory.reset();
+  study.cuts.clear();
+  // A file is what it holds, not where it lies.
+  for (StudyInput& input : study.inputs) input = {"", input.unit, input.sha256, 0, ""};
+  for (BodySettings& body : study.bodies) {
+    body.visible = true;
+    body.color.reset();
+  }
+  return study_to_json(study);
+}
+
+Result<void> identify(StudyInput& input, const std::filesystem::path& file) {
+  Result<std::string> bytes = read_file(file);
+  if (!bytes) return bytes.error();
+  input.sha256 = sha256(*bytes);
+  input.bytes = bytes->size();
+  return {};
+}
+
+Result<Study> study_from_json(const std::string& text, const std::string& where, int* schema) {
   const auto refuse = [&](const std::string& finding, const std::string& hint) {
     return Error{Code::bad_input, "\"" + where + "\": " + finding + ".", hint};
   };
@@ -413,9 +454,14 @@ Result<Study> study_from_json(const std::string& text, const std::string& where)
     return refuse("not a study, it is no valid JSON", "Give a study, a STEP or an STL file.");
   if (!json.is_object() || !json.contains("schema") || !json["schema"].is_number_integer())
     return refuse("not a study, the member \"schema\" is missing", "Give a study of Lamella.");
-  if (json["schema"].get<int>() > kSchema)
-    return refuse("written by a newer version (schema " + json["schema"].dump() + ")",
+  const Json& version = json["schema"];
+  if (version.is_number_unsigned() && version.get<std::uint64_t>() > kStudySchema)
+    return refuse("written by a newer version (schema " + version.dump() +
+                      "; this one reads up to " + std::to_string(kStudySchema) + ")",
                   "Update Lamella.");
+  if (version.get<std::int64_t>() < 1)
+    return refuse("there is no schema " + version.dump(), "Give a study of Lamella.");
+  if (schema) *schema = version.get<int>();
   std::string complaint;
   Study study;
   Members m(json, "", complaint);
@@ -431,6 +477,7 @@ Result<Study> study_from_json(const std::string& text, const std::string& where)
     for (const Json& item : m.at(name)) values.push_back(read(item, values.size(), complaint));
   };
   each("inputs", study.inputs, read_input);
+  m.flag("embed_inputs", study.embed_inputs);
   m.list("left_out", study.left_out);
   each("bodies", study.bodies, read_body);
   each("zones", study.zones, read_study_zone);
@@ -460,18 +507,15 @@ Result<void> write_study(const Study& study, const std::filesystem::path& file) 
 
 Result<void> save_study(const Study& study, const std::filesystem::path& file) {
   const std::string text = study_to_json(study);
-  if (std::error_code ec; std::filesystem::is_regular_file(file, ec)) {
-    Result<std::string> before = read_file(file);
-    if (before && *before != text)
-      if (Result<void> kept = write_file(file.string() + ".bak", *before); !kept) return kept;
-  }
-  if (Result<void> written = write_file(file, text); !written) return written;
-  Result<Study> back = read_study(file);
-  if (!back) return back.error();
-  if (study_to_json(*back) != text)
-    return Error{Code::failed, "\"" + file.string() + "\" does not read back as written.",
-                 "Save it elsewhere, and report this."};
-  return {};
+  const Result<std::string> before = read_file(file);
+  Result<AtomicFile> target = AtomicFile::create(file);
+  if (!target) return target.error();
+  target->stream() << text << std::flush;
+  Result<Study> back = read_study(target->temporary());
+  if (!target->stream() || !back || study_to_json(*back) != text)
+    return Error{Code::io, "\"" + file.string() + "\" does not read back as written.",
+                 "Check the space on the disk, or save it elsewhere."};
+  return target->commit(before && *before != text);
 }
 
 std::vector<std::filesystem::path> input_files(const Study& study,

@@ -8,15 +8,24 @@
 
 namespace lamella {
 
-/// A study as plain JSON, schema version 1: name, unit ("mm"), inputs (relative to the study's
-/// folder), bodies, zones, domain, options, sizing, groups and cuts, named as the members of Study.
-/// What is unset is left out.
+/// Of what is written. Schema 1, whose inputs had no hash, is read too.
+inline constexpr int kStudySchema = 2;
+
+/// A study as plain JSON (resources/docs/project.schema.json): name, unit ("mm"), inputs (relative
+/// to the study's folder), bodies, zones, domain, options, sizing, groups and cuts, named as the
+/// members of Study. What is unset is left out.
 std::string study_to_json(const Study& study);
 
+/// What the mesh depends on, as text: studies of one key give the same mesh. Where a file lies,
+/// what it is called, and what is for the eye does not count.
+std::string mesh_key(Study study);
+
 /// Reads what `study_to_json` writes; members left out keep their defaults. `where` names the
-/// source in messages. Errors: bad_input (not JSON, an unknown member, a value of the wrong type or
-/// out of range, a newer schema), naming the member.
-Result<Study> study_from_json(const std::string& text, const std::string& where);
+/// source in messages; `schema` (may be null) gets the version found. Errors: bad_input (not JSON,
+/// an unknown member, a value of the wrong type or out of range, a newer schema), naming the
+/// member.
+Result<Study> study_from_json(const std::string& text, const std::string& where,
+                              int* schema = nullptr);
 
 /// Errors: io, bad_input.
 Result<Study> read_study(const std::filesystem::path& file);
@@ -24,8 +33,11 @@ Result<Study> read_study(const std::filesystem::path& file);
 Result<void> write_study(const Study& study, const std::filesystem::path& file);
 
 /// The same, and what the file held before stays beside it as FILE.bak; the new one is read again
-/// and compared. Errors: io; failed when it reads back otherwise.
+/// and compared before it takes its place. Errors: io.
 Result<void> save_study(const Study& study, const std::filesystem::path& file);
+
+/// Takes down what the input's file holds now: its size and hash. Errors: io.
+Result<void> identify(StudyInput& input, const std::filesystem::path& file);
 
 /// The inputs as paths, those that are relative seen from `folder`.
 std::vector<std::filesystem::path> input_files(const Study& study,

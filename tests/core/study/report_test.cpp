@@ -7,6 +7,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/study/join.h"
+#include "core/study/study_file.h"
 #include "tests/support/box_mesh.h"
 #include "tests/support/temporary_folder.h"
 
@@ -89,7 +90,7 @@ TEST(Report, JsonCarriesWhatProgramsNeed) {
   EXPECT_EQ(json["inputs"][0]["sha256"], std::string(64, 'a'));
   EXPECT_EQ(json["records"].size(), 3u);
   EXPECT_EQ(json["exports"][0]["agrees"], true);
-  EXPECT_EQ(json["study"]["schema"], 1);
+  EXPECT_EQ(json["study"]["schema"], kStudySchema);
 }
 
 TEST(Report, HtmlIsOneSafeSelfContainedPage) {
