@@ -2,6 +2,7 @@
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
+#include "app/cli_groups.h"
 #include "app/cli_text.h"
 #include "app/services.h"
 #include "core/flow/correction.h"
@@ -39,19 +40,6 @@ Result<Input> read_input(const std::string& file, const Progress& progress) {
   if (!mesh) return mesh.error();
   out.mesh = std::move(*mesh);
   return out;
-}
-
-/// "GROUP=NUMBER"; without a number it is `otherwise`, and without that an error.
-Result<std::pair<std::string, double>> group_and_number(const std::string& text,
-                                                        std::optional<double> otherwise) {
-  const std::size_t equal = text.rfind('=');
-  if (equal == text.npos && otherwise) return std::pair(text, *otherwise);
-  const auto number =
-      equal == text.npos ? std::optional<double>{} : read_number<double>(text.substr(equal + 1));
-  if (!number)
-    return Error{Code::usage, "\"" + text + "\" is not GROUP=NUMBER.",
-                 "As --gate inlet=20 or --gate-rate inlet=1500."};
-  return std::pair(text.substr(0, equal), *number);
 }
 
 template <int D>

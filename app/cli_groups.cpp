@@ -58,4 +58,65 @@ Result<BoundaryGroup> read_group(const std::string& text) {
   return group;
 }
 
+Result<std::pair<std::string, double>> group_and_number(const std::string& text,
+                                                        std::optional<double> otherwise) {
+  const std::size_t equal = text.rfind('=');
+  if (equal == text.npos && otherwise) return std::pair(text, *otherwise);
+  const auto number =
+      equal == text.npos ? std::optional<double>{} : read_number<double>(text.substr(equal + 1));
+  if (!number)
+    return Error{Code::usage, "\"" + text + "\" is not GROUP=NUMBER.",
+                 "As --gate inlet=20 or --gate-rate inlet=1500."};
+  return std::pair(text.substr(0, equal), *number);
+}
+
+Result<void> add_flow(const MeshCommand& c, Study& study) {
+  bool named = false;
+  const auto give = [&](const std::string& name, GroupKind kind, std::optional<double> pressure,
+                        std::optional<double> rate) -> Result<void> {
+    named = true;
+    bool found = false;
+    for (BoundaryGroup& group : study.groups) {
+      if (group.name != name) continue;
+      group.kind = kind;
+      group.pressure = pressure;
+      group.rate = rate;
+      found = true;
+    }
+    if (found) return {};
+    return Error{Code::usage, "There is no group \"" + name + "\" for the flow.",
+                 "Make it by --group NAME=BODY:FACE,.."};
+  };
+  for (const std::string& text : c.gates) {
+    auto gate = group_and_number(text, 1);
+    if (!gate) return gate.error();
+    if (auto done = give(gate->first, GroupKind::gate, gate->second, {}); !done) return done;
+  }
+  for (const std::string& text : c.rates) {
+    auto gate = group_and_number(text, {});
+    if (!gate) return gate.error();
+    if (auto done = give(gate->first, GroupKind::gate, {}, gate->second); !done) return done;
+  }
+  for (const std::string& name : c.vents)
+    if (auto done = give(name, GroupKind::vent, {}, {}); !done) return done;
+  for (const std::string& name : c.symmetries)
+    if (auto done = give(name, GroupKind::symmetry, {}, {}); !done) return done;
+  if (c.flow && *c.flow == "none") study.flow.reset();
+  if (c.flow && *c.flow != "none") {
+    if (!study.flow) study.flow.emplace();
+    for (const FlowMethod method : kFlowMethods)
+      if (*c.flow == flow_method_name(method)) study.flow->method = method;
+  }
+  named = named || c.flow_strength || c.flow_beta || c.flow_growth || c.flow_rounds ||
+          !c.flow_bodies.empty();
+  if (!study.flow && named && !c.flow)
+    return Error{Code::usage, "Gates and vents are for a flow.", "Add --flow METHOD."};
+  if (!study.flow) return {};
+  if (c.flow_strength) study.flow->strength = *c.flow_strength;
+  if (c.flow_beta) study.flow->beta = *c.flow_beta;
+  if (c.flow_growth) study.flow->growth = *c.flow_growth;
+  if (c.flow_rounds) study.flow->rounds = *c.flow_rounds;
+  return {};
+}
+
 }  // namespace lamella::cli

@@ -88,6 +88,7 @@ Result<Request> request_of(const MeshCommand& c) {
     if (!group) return group.error();
     request.study.groups.push_back(std::move(*group));
   }
+  if (Result<void> added = add_flow(c, request.study); !added) return added.error();
   return request;
 }
 
@@ -107,6 +108,8 @@ void apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study
     if (c.h_min) body.h_min = c.h_min;
     if (c.h_max) body.h_max = c.h_max;
     if (c.interface_size) body.interface_size = c.interface_size;
+    if (!c.flow_bodies.empty())
+      body.flow = std::count(c.flow_bodies.begin(), c.flow_bodies.end(), name) > 0;
     bodies.push_back(std::move(body));
   }
   for (const BodySettings& other : study.bodies)
@@ -131,6 +134,9 @@ void tell_iteration(const IterationRecord& r, Console& console) {
                   r.interface_error);
     text += line;
   }
+  if (r.flow_rate > 0)
+    text += "   flow " + short_number(r.flow_rate, 5) + " mm3/s at " +
+            short_number(r.flow_pressure, 4) + " MPa";
   console.say(text);
   if (!console.json()) return;
   Json json = Json::parse(record_json(r));

@@ -351,6 +351,46 @@ void add_groups(CLI::App* m, MeshCommand& mesh) {
       ->allow_extra_args(false);
 }
 
+void add_flow_of_loop(CLI::App* m, MeshCommand& mesh) {
+  const auto several = [m](const char* name, std::vector<std::string>& texts, const char* form,
+                           const char* what) {
+    return m->add_option(name, texts, what)->option_text(form)->allow_extra_args(false);
+  };
+  several("--gate", mesh.gates, "GROUP[=P]",
+          "Boundary group of --group where a fluid enters, at a pressure in MPa [1]; may be "
+          "repeated, as the next three");
+  several("--gate-rate", mesh.rates, "GROUP=Q", "The same with the rate that enters, mm3/s");
+  several("--vent", mesh.vents, "GROUP", "Group where it leaves, at the pressure 0");
+  several("--symmetry", mesh.symmetries, "GROUP", "Planes of symmetry of the flow");
+  std::vector<std::string> methods{"none"};
+  for (const FlowMethod method : kFlowMethods) methods.emplace_back(flow_method_name(method));
+  m->add_option(
+       "--flow", mesh.flow,
+       "Solve a Stokes flow through the mesh that has settled, and correct it by the flow: "
+       "where its acceleration or its velocity changes (acceleration, velocity), by the "
+       "strain rate (strain), or by the change of direction or the residual made even "
+       "over the elements (direction, residual, directional)")
+      ->option_text("METHOD")
+      ->check(CLI::IsMember(methods));
+  m->add_option("--flow-rounds", mesh.flow_rounds,
+                "Rounds of flow and correction; 0 solves the flow alone [1]")
+      ->option_text("N")
+      ->check(CLI::Range(0, 100));
+  const auto number = [m](const char* name, std::optional<double>& value, const char* text,
+                          const char* what) {
+    m->add_option(name, value, what)->option_text(text)->check(CLI::PositiveNumber);
+  };
+  number("--flow-strength", mesh.flow_strength, "MU",
+         "Of acceleration, velocity and strain: times the mu that lets them dominate the metric "
+         "[1]");
+  number("--flow-beta", mesh.flow_beta, "B",
+         "Of direction and the residuals: factor of the mean error; below 1 refines [1]");
+  number("--flow-growth", mesh.flow_growth, "X",
+         "Elements that the correction may ask for, over those without it, above 1 [1.5]");
+  several("--flow-body", mesh.flow_bodies, "NAME",
+          "Body that the flow corrects [all with a gate]; may be repeated");
+}
+
 void add_domain(CLI::App* m, MeshCommand& mesh) {
   m->add_option("--domain", mesh.domain,
                 "One mesh of all bodies, in this domain: bodies (their union), margin[=SHARE] (a "
@@ -471,6 +511,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   add_sizing(m, mesh);
   add_boundary_layers(m, mesh);
   add_groups(m, mesh);
+  add_flow_of_loop(m, mesh);
   add_unit(m, mesh.unit);
   add_repair(m, mesh.repair, mesh.wrap_spacing);
   add_cad(m, mesh.cad);

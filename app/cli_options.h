@@ -40,6 +40,10 @@ struct MeshCommand {
   std::optional<std::string> domain, interfaces, capture;
   std::optional<double> interface_size;
   std::vector<std::string> drop, boundary_layers;
+  std::vector<std::string> gates, rates, vents, symmetries, flow_bodies;
+  std::optional<std::string> flow;
+  std::optional<double> flow_strength, flow_beta, flow_growth;
+  std::optional<int> flow_rounds;
   std::string report;
   bool json = false;
 };

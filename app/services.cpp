@@ -55,6 +55,41 @@ std::shared_ptr<const Filling> filling_of(const std::vector<ElementField>& field
   return filling;
 }
 
+const char* const kVelocity = "velocity";
+const char* const kPressure = "pressure";
+const char* const kShear = "shear_rate";
+const char* const kIndicator = "flow_indicator";
+
+void add_flow(const FlowFields& flow, MeshFields& fields) {
+  NodeField velocity{kVelocity, 3, {}};
+  for (const Vec<3>& v : flow.velocity)
+    velocity.values.insert(velocity.values.end(), v.begin(), v.end());
+  fields.of_nodes.push_back(std::move(velocity));
+  fields.of_nodes.push_back({kPressure, 1, flow.pressure});
+  fields.of_elements.push_back({kShear, flow.shear});
+  fields.of_elements.push_back({kIndicator, flow.indicator});
+}
+
+/// What `add_flow` says; null where a field is missing.
+std::shared_ptr<const FlowFields> flow_of(const MeshContent& content) {
+  auto flow = std::make_shared<FlowFields>();
+  for (const NodeField& field : content.of_nodes) {
+    if (field.name == kPressure && field.components == 1) flow->pressure = field.values;
+    if (field.name != kVelocity || field.components != 3) continue;
+    for (std::size_t i = 0; i + 2 < field.values.size(); i += 3)
+      flow->velocity.emplace_back(field.values[i], field.values[i + 1], field.values[i + 2]);
+  }
+  for (const ElementField& field : content.of_elements) {
+    if (field.name == kShear) flow->shear = field.values;
+    if (field.name == kIndicator) flow->indicator = field.values;
+  }
+  const std::size_t nodes = content.mesh.points.size(), elements = content.mesh.elements.size();
+  if (flow->velocity.size() != nodes || flow->pressure.size() != nodes ||
+      flow->shear.size() != elements || flow->indicator.size() != elements)
+    return nullptr;
+  return flow;
+}
+
 Result<const MeshFormat*> format_for(const fs::path& file, const ExportOptions& options) {
   return options.format.empty() ? mesh_formats().of_file(file)
                                 : mesh_formats().called(options.format);
@@ -163,6 +198,7 @@ Result<ExportCertificate> export_mesh(const fs::path& file, const MeshState& sta
   if (!state.layers.empty()) fields.layers = &state.layers;
   if (!state.quality.empty()) fields.quality = &state.quality;
   if (state.filling) fields.of_elements = filling_fields(state);
+  if (state.flow) add_flow(*state.flow, fields);
   fields.provenance = provenance_json(study, state.mesh, inputs);
   return write(file, state.mesh, fields, options, progress);
 }
@@ -197,6 +233,7 @@ Result<MeshState> read_mesh(const fs::path& file, const Progress& progress) {
   if (!content) return content.error();
   MeshState state;
   state.filling = filling_of(content->of_elements, content->mesh);
+  state.flow = flow_of(*content);
   state.mesh = std::move(content->mesh);
   state.metric = std::move(content->metric);
   state.thickness = std::move(content->thickness);

@@ -1,6 +1,7 @@
 #include "core/flow/correction.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "core/base/parallel.h"
@@ -15,11 +16,6 @@ namespace {
 constexpr double kDominance = 256;
 /// The strongest tensor, but for what a corner's singularity makes of it.
 constexpr double kQuantile = 0.99;
-
-template <int D>
-double forecast(const SimplexMesh<D>& mesh, const MetricField<D>& metric) {
-  return allocation_factor<D>(mesh, metric) * static_cast<double>(mesh.elements.size());
-}
 
 Result<void> positive(const std::optional<double>& value, const char* name) {
   if (value && !(*value > 0 && std::isfinite(*value)))
@@ -65,7 +61,47 @@ Result<void> check_input(const SimplexMesh<D>& mesh, const MetricField<D>& metri
   return check_metric<D>(metric, mesh.node_count());
 }
 
+template <int D>
+Result<void> check_uniformize(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
+                              const std::vector<double>& indicator,
+                              const UniformizeParams& params) {
+  for (const Result<void>& checked :
+       {positive(params.order, "The order of convergence"), positive(params.beta, "beta"),
+        positive(params.elements, "The number of elements"), positive(params.h_min, "h_min"),
+        positive(params.most_change - 1, "The largest change of a size less one"),
+        check_input<D>(mesh, metric, indicator.size(), mesh.elements.size())})
+    if (!checked) return checked.error();
+  for (const double a : indicator)
+    if (!(a >= 0) || !std::isfinite(a))
+      return Error{Code::bad_input, "The indicator has a value that is negative or no number.", ""};
+  return {};
+}
+
+/// Of the sizes at the nodes, (5.12) and (5.14), where the mean error is to be beta times as large.
+template <int D>
+std::vector<double> evening_factors(const SimplexMesh<D>& mesh,
+                                    const std::vector<double>& indicator, double beta,
+                                    const UniformizeParams& params) {
+  std::vector<double> alpha(indicator.size());
+  double sum = 0;
+  for (std::size_t e = 0; e < alpha.size(); ++e) {
+    alpha[e] = std::pow(indicator[e], 2 / (2 * params.order + D));
+    sum += std::pow(alpha[e], D);
+  }
+  const double global = std::pow(sum / static_cast<double>(alpha.size()), 1.0 / D);
+  const double most = params.most_change;
+  for (double& a : alpha)
+    a = a * most > beta * global ? std::max(beta * global / a, 1 / most) : most;
+  if (global == 0) std::fill(alpha.begin(), alpha.end(), beta);
+  return nodal_means<D, double>(mesh, alpha, params.threads);
+}
+
 }  // namespace
+
+template <int D>
+double forecast_elements(const SimplexMesh<D>& mesh, const MetricField<D>& metric) {
+  return allocation_factor<D>(mesh, metric) * static_cast<double>(mesh.elements.size());
+}
 
 template <int D>
 std::vector<Mat<D>> gradient_tensors(const SimplexMesh<D>& mesh, const std::vector<double>& field,
@@ -121,7 +157,7 @@ Result<Corrected<D>> add_tensors(const SimplexMesh<D>& mesh, const MetricField<D
   const double strongest = *std::max_element(ratio.begin(), ratio.end());
   std::erase_if(ratio, [&](double r) { return r <= 1e-12 * strongest; });
   Corrected<D> out;
-  out.elements_before = forecast<D>(mesh, metric);
+  out.elements_before = forecast_elements<D>(mesh, metric);
   const auto with = [&](double weight) {
     MetricField<D> sum = metric;
     for (std::size_t n = 1; n < sum.size(); ++n) sum[n] += weight * tensors[n];
@@ -137,7 +173,7 @@ Result<Corrected<D>> add_tensors(const SimplexMesh<D>& mesh, const MetricField<D
     out.weight = kDominance * params.strength * params.strength / *at;
     out.metric = with(out.weight);
   }
-  out.elements_after = forecast<D>(mesh, out.metric);
+  out.elements_after = forecast_elements<D>(mesh, out.metric);
   if (params.elements && out.elements_after > *params.elements) {
     if (out.elements_before >= *params.elements) {
       out.weight = 0;
@@ -153,7 +189,7 @@ Result<Corrected<D>> add_tensors(const SimplexMesh<D>& mesh, const MetricField<D
         if (progress.cancelled()) return cancelled_error();
         const double middle = k < 20 ? 0.25 * high + 0.75 * low : 0.5 * (low + high);
         MetricField<D> tried = with(middle);
-        const double elements = forecast<D>(mesh, tried);
+        const double elements = forecast_elements<D>(mesh, tried);
         (elements > *params.elements ? high : low) = middle;
         progress.report(0.2 + 0.8 * k / kHalvings);
         if (elements > *params.elements) continue;
@@ -166,7 +202,7 @@ Result<Corrected<D>> add_tensors(const SimplexMesh<D>& mesh, const MetricField<D
         out.metric = metric;
       }
     }
-    out.elements_after = forecast<D>(mesh, out.metric);
+    out.elements_after = forecast_elements<D>(mesh, out.metric);
   }
   progress.report(1);
   return out;
@@ -176,33 +212,14 @@ template <int D>
 Result<Corrected<D>> uniformize(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
                                 const std::vector<double>& indicator,
                                 const UniformizeParams& params, const Progress& progress) {
-  for (const Result<void>& checked :
-       {positive(params.order, "The order of convergence"), positive(params.beta, "beta"),
-        positive(params.elements, "The number of elements"), positive(params.h_min, "h_min"),
-        positive(params.most_change - 1, "The largest change of a size less one"),
-        check_input<D>(mesh, metric, indicator.size(), mesh.elements.size())})
-    if (!checked) return checked.error();
-  for (const double a : indicator)
-    if (!(a >= 0) || !std::isfinite(a))
-      return Error{Code::bad_input, "The indicator has a value that is negative or no number.", ""};
-
+  if (Result<void> good = check_uniformize<D>(mesh, metric, indicator, params); !good)
+    return good.error();
   const auto count = static_cast<double>(mesh.elements.size());
-  std::vector<double> alpha(indicator.size());
-  double sum = 0;
-  for (std::size_t e = 0; e < alpha.size(); ++e) {
-    alpha[e] = std::pow(indicator[e], 2 / (2 * params.order + D));
-    sum += std::pow(alpha[e], D);
-  }
-  const double global = std::pow(sum / count, 1.0 / D);
   const double beta = params.elements ? std::pow(count / *params.elements, 1.0 / D) : params.beta;
-  const double most = params.most_change;
-  for (double& a : alpha)
-    a = a * most > beta * global ? std::max(beta * global / a, 1 / most) : most;
-  if (global == 0) std::fill(alpha.begin(), alpha.end(), beta);
-  const std::vector<double> factor = nodal_means<D, double>(mesh, alpha, params.threads);
+  const std::vector<double> factor = evening_factors<D>(mesh, indicator, beta, params);
 
   Corrected<D> out;
-  out.elements_before = forecast<D>(mesh, metric);
+  out.elements_before = forecast_elements<D>(mesh, metric);
   out.metric = metric;
   for (std::size_t n = 1; n < metric.size(); ++n)
     if (factor[n] > 0) out.metric[n] *= eigenvalue_from_size(factor[n]);
@@ -215,7 +232,52 @@ Result<Corrected<D>> uniformize(const SimplexMesh<D>& mesh, const MetricField<D>
     keep_above<D>(*params.h_min, metric, out.metric, params.threads);
   }
   if (progress.cancelled()) return cancelled_error();
-  out.elements_after = forecast<D>(mesh, out.metric);
+  out.elements_after = forecast_elements<D>(mesh, out.metric);
+  progress.report(1);
+  return out;
+}
+
+template <int D>
+Result<Refined> refine_evenly(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
+                              const std::vector<double>& indicator, std::vector<double> factors,
+                              const UniformizeParams& params, const Progress& progress) {
+  if (Result<void> good = check_uniformize<D>(mesh, metric, indicator, params); !good)
+    return good.error();
+  if (factors.size() != mesh.points.size())
+    return Error{Code::bad_input, "The factors are not those of the mesh's nodes.", ""};
+  const std::vector<double> evening = evening_factors<D>(mesh, indicator, 1, params);
+  for (std::size_t n = 1; n < factors.size(); ++n) factors[n] *= evening[n];
+
+  Refined out;
+  out.elements_before = forecast_elements<D>(mesh, metric);
+  MetricField<D> tried;
+  const auto with = [&](double beta) {
+    out.factors.assign(factors.size(), 1);
+    tried = metric;
+    for (std::size_t n = 1; n < factors.size(); ++n) {
+      if (factors[n] > 0) out.factors[n] = std::min(1.0, beta * factors[n]);
+      tried[n] *= eigenvalue_from_size(out.factors[n]);
+    }
+    if (params.h_min) keep_above<D>(*params.h_min, metric, tried, params.threads);
+    return out.elements_after = forecast_elements<D>(mesh, tried);
+  };
+  const double budget = params.elements.value_or(std::numeric_limits<double>::infinity());
+  double low = std::log(params.beta), high = low;
+  if (with(params.beta) > budget) {
+    // Without any factor below 1 the forecast is that of the metric.
+    for (const double f : factors)
+      if (f > 0) high = std::max(high, -std::log(f));
+    constexpr int kHalvings = 30;
+    for (int k = 0; k < kHalvings; ++k) {
+      if (progress.cancelled()) return cancelled_error();
+      const double middle = 0.5 * (low + high);
+      const double elements = with(std::exp(middle));
+      (elements > budget ? low : high) = middle;
+      progress.report(static_cast<double>(k) / kHalvings);
+      if (elements <= budget && elements > 0.995 * budget) break;
+    }
+    with(std::exp(high));
+  }
   progress.report(1);
   return out;
 }
@@ -253,6 +315,14 @@ template Result<Corrected<2>> uniformize(const SimplexMesh<2>&, const MetricFiel
 template Result<Corrected<3>> uniformize(const SimplexMesh<3>&, const MetricField<3>&,
                                          const std::vector<double>&, const UniformizeParams&,
                                          const Progress&);
+template Result<Refined> refine_evenly(const SimplexMesh<2>&, const MetricField<2>&,
+                                       const std::vector<double>&, std::vector<double>,
+                                       const UniformizeParams&, const Progress&);
+template Result<Refined> refine_evenly(const SimplexMesh<3>&, const MetricField<3>&,
+                                       const std::vector<double>&, std::vector<double>,
+                                       const UniformizeParams&, const Progress&);
+template double forecast_elements(const SimplexMesh<2>&, const MetricField<2>&);
+template double forecast_elements(const SimplexMesh<3>&, const MetricField<3>&);
 template MetricField<2> own_metric(const SimplexMesh<2>&, int);
 template MetricField<3> own_metric(const SimplexMesh<3>&, int);
 

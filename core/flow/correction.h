@@ -72,6 +72,24 @@ Result<Corrected<D>> uniformize(const SimplexMesh<D>& mesh, const MetricField<D>
                                 const std::vector<double>& indicator,
                                 const UniformizeParams& params = {}, const Progress& progress = {});
 
+struct Refined {
+  std::vector<double> factors;                     ///< [node] of all sizes, in (0, 1]
+  double elements_before = 0, elements_after = 0;  ///< forecast (1.34)
+};
+
+/// The same by refinement alone: `factors`, [node] those that the mesh was made with, times what
+/// evens the indicator out, but never above 1, so that no size grows beyond that of `metric`, which
+/// is asked without them. `elements` is a budget here: beta grows until the forecast is within it.
+/// Errors: as `add_tensors`.
+template <int D>
+Result<Refined> refine_evenly(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
+                              const std::vector<double>& indicator, std::vector<double> factors,
+                              const UniformizeParams& params = {}, const Progress& progress = {});
+
+/// The elements (1.34) that a metric at the nodes of a mesh asks for.
+template <int D>
+double forecast_elements(const SimplexMesh<D>& mesh, const MetricField<D>& metric);
+
 /// The metric that a mesh already is: at each node the log-Euclidean mean of the elements' own
 /// metrics M_T (1.11).
 template <int D>

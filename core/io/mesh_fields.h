@@ -38,7 +38,7 @@ struct MeshFields {
   const std::vector<double>* layers = nullptr;     ///< [node] measured; NaN where not
   const std::vector<double>* quality = nullptr;    ///< [element] c(T), eq. (3.7)
   std::vector<ElementField> of_elements{};         ///< further ones, the filling ratios among them
-  std::vector<NodeField> of_nodes{};               ///< the same at the nodes; VTU only
+  std::vector<NodeField> of_nodes{};               ///< the same at the nodes; VTU and MSH
   LengthUnit unit = LengthUnit::mm;  ///< of all the above and of the mesh, for those that tell it
   std::string provenance{};          ///< JSON object: program, study, inputs; VTU only
 };

@@ -227,8 +227,8 @@ std::vector<std::int32_t> write_elements(const SimplexMesh<3>& mesh,
   return tags;
 }
 
-/// `value(i, component)` of what has the number `tag(i)`, i from 1; the components are 1 or 9, all
-/// that Gmsh knows for our fields.
+/// `value(i, component)` of what has the number `tag(i)`, i from 1; the components are 1, 3 or 9,
+/// all that Gmsh knows.
 template <class Tag, class Value>
 void write_data(const std::string& section, const std::string& name, int components,
                 std::size_t count, Writer& w, const Tag& tag, const Value& value) {
@@ -252,6 +252,13 @@ void write_fields(const SimplexMesh<3>& mesh, const MeshFields& fields,
   if (fields.thickness)
     write_data("NodeData", "thickness", 1, mesh.node_count(), w, node,
                [&](std::size_t v, int) { return (*fields.thickness)[v]; });
+  for (const NodeField& field : fields.of_nodes)
+    write_data(
+        "NodeData", field.name, field.components, mesh.node_count(), w, node,
+        [&](std::size_t v, int c) {
+          return field
+              .values[v * static_cast<std::size_t>(field.components) + static_cast<std::size_t>(c)];
+        });
   for (const ElementField& field : fields.of_elements)
     write_data(
         "ElementData", field.name, 1, tags.size(), w, [&](std::size_t i) { return tags[i - 1]; },

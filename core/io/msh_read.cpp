@@ -292,7 +292,20 @@ std::int32_t index_of(std::map<std::int32_t, std::int32_t>& indices,
 /// False when a value is of a node that is not in the file.
 bool take_nodes(const Raw::Field& field, const Numbers& numbers, MeshContent& out) {
   const bool is_metric = field.name == "metric" && field.components == 9;
-  if (!is_metric && !(field.name == "thickness" && field.components == 1)) return true;
+  if (!is_metric && !(field.name == "thickness" && field.components == 1)) {
+    if (field.components != 1 && field.components != 3) return true;
+    const auto n = static_cast<std::size_t>(field.components);
+    NodeField further{field.name, field.components,
+                      std::vector<double>(n * out.mesh.points.size(), 0)};
+    for (std::size_t i = 0; i < field.tags.size(); ++i) {
+      const NodeId node = numbers.of(field.tags[i]);
+      if (node == 0) return false;
+      for (std::size_t c = 0; c < n; ++c)
+        further.values[static_cast<std::size_t>(node) * n + c] = field.values[n * i + c];
+    }
+    out.of_nodes.push_back(std::move(further));
+    return true;
+  }
   if (is_metric)
     out.metric.assign(out.mesh.points.size(), Metric<3>::Identity());
   else

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
 #include "core/base/parallel.h"
 #include "core/mesh/interfaces.h"
@@ -66,9 +67,62 @@ class AssemblyLoop {
     return {};
   }
 
+  /// The flow through each body that has one. What cannot be solved is a note. Errors: cancelled.
+  Result<void> solve_flow(const Progress& progress) {
+    if (!exact_) {
+      of_.outcomes.front().notes.emplace_back("Flow: only in a mesh with exact interfaces.");
+      return {};
+    }
+    auto all = std::make_shared<FlowFields>();
+    all->resize(current_.mesh.points.size(), current_.mesh.elements.size());
+    for (std::size_t m = 0; m < of_.members.size(); ++m) {
+      const std::string& name = of_.members[m].part.name;
+      if (!flows(m)) continue;
+      std::vector<NodeId> node;
+      const SimplexMesh<3> body = extract_body(current_.mesh, of_.body_of[m], &node);
+      const Result<FlowFields> flow =
+          flow_through(body, flow_case_of(study_, name), study_.flow->method, options_.threads,
+                       share(m, progress));
+      if (!flow && flow.error().code == Code::cancelled) return flow.error();
+      if (!flow) {
+        of_.outcomes[m].notes.push_back("Flow: " + flow.error().message);
+        continue;
+      }
+      std::vector<std::size_t> element;
+      for (std::size_t e = 0; e < current_.mesh.elements.size(); ++e)
+        if (current_.mesh.element_body[e] == of_.body_of[m]) element.push_back(e);
+      all->put(*flow, node, element);
+    }
+    if (all->openings.empty()) return {};
+    records_.back().flow_rate = all->rate();
+    records_.back().flow_pressure = all->highest_pressure();
+    current_.flow = std::move(all);
+    return {};
+  }
+
+  /// One round: the metric of each body corrected by its flow, and the mesh adapted to it.
+  /// Errors: as `step`.
+  Result<void> flow_step(const Progress& progress) {
+    if (!current_.flow) return {};
+    for (std::size_t m = 0; m < of_.members.size(); ++m) {
+      if (!flows(m)) continue;
+      if (Result<void> corrected = correct_by_flow(m, share(m, progress.portion(0, 0.1)));
+          !corrected)
+        return corrected;
+    }
+    if (Result<void> stepped = step(progress.portion(0.1, 0.7)); !stepped || failed_)
+      return stepped;
+    return solve_flow(progress.portion(0.7, 1));
+  }
+
   const MeshState& current() const { return current_; }
   const IterationRecord& last_record() const { return records_.back(); }
   bool settled() const { return settled_; }
+  bool wants_flow() const {
+    for (std::size_t m = 0; m < of_.members.size(); ++m)
+      if (flows(m)) return true;
+    return false;
+  }
   bool failed() const { return failed_; }
   bool converged() const {
     return settled_ && !failed_ &&
@@ -104,6 +158,46 @@ class AssemblyLoop {
   }
 
  private:
+  bool flows(std::size_t m) const {
+    return of_.body_of[m] >= 0 && has_flow(study_, of_.members[m].part.name);
+  }
+  Progress share(std::size_t m, const Progress& progress) const {
+    const auto count = static_cast<double>(of_.members.size()), at = static_cast<double>(m);
+    return progress.portion(at / count, (at + 1) / count);
+  }
+
+  Result<void> correct_by_flow(std::size_t m, const Progress& progress) {
+    Member& member = of_.members[m];
+    std::vector<NodeId> node;
+    const SimplexMesh<3> body = extract_body(current_.mesh, of_.body_of[m], &node);
+    FlowFields flow;
+    for (const NodeId n : node) {
+      flow.velocity.push_back(current_.flow->velocity[n]);
+      flow.pressure.push_back(current_.flow->pressure[n]);
+    }
+    for (std::size_t e = 0; e < current_.mesh.elements.size(); ++e)
+      if (current_.mesh.element_body[e] == of_.body_of[m])
+        flow.indicator.push_back(current_.flow->indicator[e]);
+    MetricField<3> natural(body.points.size(), Metric<3>::Identity());
+    const auto ask = [&](std::size_t i) {
+      const Vec<3>& x = body.points[i + 1];
+      natural[i + 1] = member.sizing.apply(x, learnt_in(member, x));
+    };
+    if (!parallel_each(body.node_count(), options_.threads, progress.portion(0, 0.5), ask))
+      return cancelled_error();
+    Result<FlowCorrection> made =
+        flow_correction(body, natural, flow, *study_.flow, member.of_flow, member.natural.h_min,
+                        options_.threads, progress.portion(0.5, 1));
+    if (!made) return made.error();
+    member.of_flow = std::move(made->field);
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "Corrected by the flow: %.4g instead of %.4g elements asked for.",
+                  made->elements_after, made->elements_before);
+    of_.outcomes[m].notes.emplace_back(text);
+    return {};
+  }
+
   AdaptParams adapt_params() const {
     AdaptParams params;
     params.chord_tolerance = of_.mesh_tolerance;
@@ -187,9 +281,12 @@ class AssemblyLoop {
 
   Metric<3> natural_in(int region, const Vec<3>& x) const {
     const Member& member = of_.members[region];
-    return member.sizing.apply(
-        x, member.correction.apply(x, member.detector->at(x, member.natural).metric,
-                                   member.natural.h_min));
+    return member.sizing.apply(x,
+                               member.of_flow.apply(x, learnt_in(member, x), member.natural.h_min));
+  }
+  static Metric<3> learnt_in(const Member& member, const Vec<3>& x) {
+    return member.correction.apply(x, member.detector->at(x, member.natural).metric,
+                                   member.natural.h_min);
   }
 
   /// The natural metric of the region that x lies in, refined towards the sizes beyond its borders
@@ -316,6 +413,7 @@ class AssemblyLoop {
     state.below.insert(state.below.end(), layers->below.begin(), layers->below.end());
     for (std::size_t i = 1; i < old_id.size(); ++i)
       if (std::isfinite(layers->at_node[i])) state.layers[old_id[i]] = layers->at_node[i];
+    if (!member.of_flow.empty()) return {};  // it asks for more than layers
     Result<LayerCorrection> learnt = LayerCorrection::learn(
         member.correction, body, layers->at_node, kWantedLayers * outcome.layers_asked,
         options_.threads, progress.portion(0.7, 1));
@@ -434,8 +532,10 @@ Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
     return begun.error();
   tell();
   const int iterations = study.options.iterations;
+  const bool flows = loop.wants_flow();
+  const int rounds = flows ? study.flow->rounds : 0;
+  const double width = (0.97 - kFirstMeshShare) / (iterations + rounds + (flows ? 0.5 : 0.0));
   for (int i = 1; i <= iterations && !outcome.cancelled; ++i) {
-    const double width = (0.97 - kFirstMeshShare) / iterations;
     const Progress round =
         progress.portion(kFirstMeshShare + width * (i - 1), kFirstMeshShare + width * i,
                          "iteration " + std::to_string(i));
@@ -444,6 +544,21 @@ Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
     outcome.cancelled = !stepped;
     if (stepped && !loop.failed()) tell();
     if (loop.failed() || (study.options.until_settled && loop.settled())) break;
+  }
+  for (int i = 0; flows && i <= rounds && !outcome.cancelled && !loop.failed(); ++i) {
+    const double from = kFirstMeshShare + width * (iterations + (i == 0 ? 0 : i - 0.5));
+    const Progress round = progress.portion(from, from + (i == 0 ? 0.5 : 1) * width, "flow");
+    const Result<void> done = i == 0 ? loop.solve_flow(round) : loop.flow_step(round);
+    if (!done && done.error().code != Code::cancelled) return done.error();
+    outcome.cancelled = !done;
+    if (!done || loop.failed()) break;
+    if (i > 0) {
+      tell();
+    } else {  // the same mesh, now with its flow
+      outcome.records.back() = loop.last_record();
+      outcome.state = std::make_shared<const MeshState>(loop.current());
+      if (on_iteration && outcome.state->flow) on_iteration(loop.last_record(), outcome.state);
+    }
   }
   Result<std::vector<BodyOutcome>> closed =
       loop.finish(outcome.cancelled ? Progress{} : progress.portion(0.97, 1));

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/flow/correction_field.h"
 #include "core/multidomain/partition.h"
 #include "core/natural/layer_correction.h"
 #include "core/natural/medial_ball.h"
@@ -19,6 +20,7 @@ struct Member {
   std::unique_ptr<const NaturalDetector> detector;
   SizingField sizing;
   LayerCorrection correction;
+  CorrectionField of_flow;
   std::unique_ptr<const FaceGroups> groups;  ///< null: the study has none on it
   double interface_size = 0;                 ///< mm, across its borders
   /// A formula that ends with the domain only: the mesh finds its edges.

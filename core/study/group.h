@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct BoundaryGroup {
   std::vector<std::int32_t> faces{};      ///< CAD face ids
   std::vector<std::string> face_names{};  ///< all faces that have one of these names
   std::vector<Flood> floods{};
+  std::optional<double> pressure{};  ///< MPa, of a gate; neither this nor a rate: 1
+  std::optional<double> rate{};      ///< mm^3/s into the body, of a gate, in place of the pressure
 };
 
 /// The facets of `surface` that the group covers, in rising order, whatever body it names.

@@ -19,6 +19,23 @@ void put_in_groups(const FaceGroups& of, const std::string& walls, std::size_t f
   }
 }
 
+/// The fields of all bodies, zero in those without a flow; null when none has one.
+std::shared_ptr<const FlowFields> join_flows(const std::vector<const MeshState*>& bodies) {
+  std::shared_ptr<FlowFields> all;
+  for (const MeshState* body : bodies)
+    if (body->flow && !all) all = std::make_shared<FlowFields>();
+  if (!all) return all;
+  all->resize(1, 0);
+  for (const MeshState* body : bodies) {
+    if (body->flow)
+      all->append(*body->flow);
+    else
+      all->resize(all->pressure.size() + body->mesh.node_count(),
+                  all->shear.size() + body->mesh.elements.size());
+  }
+  return all;
+}
+
 }  // namespace
 
 std::int32_t group_called(const std::string& name, std::vector<std::string>& groups) {
@@ -68,6 +85,7 @@ std::shared_ptr<const MeshState> join(const std::vector<const MeshState*>& bodie
     append(joined->quality, body.quality, 0);
     append(joined->below, body.below, 0);
   }
+  joined->flow = join_flows(bodies);
   return joined;
 }
 
@@ -109,6 +127,8 @@ IterationRecord join(const std::vector<const IterationRecord*>& records) {
     all.unit_edges += e * r->unit_edges;
     all.seconds += r->seconds;
     all.forecast_nodes += r->forecast_nodes;
+    all.flow_rate += r->flow_rate;
+    all.flow_pressure = std::max(all.flow_pressure, r->flow_pressure);
     all.forecast_memory = std::max(all.forecast_memory, r->forecast_memory);
     all.layers_by_nodes += static_cast<double>(r->nodes) * r->layers_by_nodes;
     elements += e;

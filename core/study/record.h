@@ -23,6 +23,8 @@ struct IterationRecord {
   double forecast_nodes = 0;   ///< of the mesh at the end; 0 where nothing was forecast
   double forecast_memory = 0;  ///< MB its adaption takes
   std::size_t mixed = 0;       ///< elements that more than one body fills
+  double flow_rate = 0;        ///< mm^3/s that enter by the gates; 0 where no flow was solved
+  double flow_pressure = 0;    ///< MPa, the largest of a gate
   double interface_error = 0;  ///< largest relative L2 error (6.12) of a body's filling ratio
 };
 

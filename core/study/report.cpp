@@ -40,6 +40,8 @@ Json iteration_json(const IterationRecord& r) {
           {"layers_by_nodes", r.layers_by_nodes},
           {"mixed", r.mixed},
           {"interface_error", r.interface_error},
+          {"flow_rate", r.flow_rate},
+          {"flow_pressure", r.flow_pressure},
           {"forecast_nodes", r.forecast_nodes},
           {"forecast_memory", r.forecast_memory},
           {"seconds", r.seconds}};

@@ -4,8 +4,52 @@
 
 #include "core/geometry/triangles.h"
 #include "core/sizing/sizing_field.h"
+#include "core/study/flow_round.h"
 
 namespace lamella {
+
+namespace {
+
+Result<void> check_flow(const Study& study, const std::vector<std::string>& names) {
+  if (!study.flow) return {};
+  const auto usage = [](const std::string& message, const std::string& hint) {
+    return Error{Code::usage, message, hint};
+  };
+  const StudyFlow& f = *study.flow;
+  if (!(f.strength > 0 && f.beta > 0 && f.viscosity > 0))
+    return usage("The strength, beta and the viscosity of the flow must be positive.",
+                 "Leave them out for 1.");
+  if (!(f.growth > 1))
+    return usage("The growth that the flow may cause must be above 1.", "1.5 is the default.");
+  if (f.rounds < 0) return usage("Rounds of the flow cannot be negative.", "1 is the default.");
+  bool any = false;
+  for (const std::string& name : names) {
+    if (!has_flow(study, name)) continue;
+    any = true;
+    const FlowCase<3> flow = flow_case_of(study, name);
+    for (const BoundaryGroup& group : study.groups)
+      if (group.pressure && group.rate)
+        return usage(
+            "Gate "
+            " + group.name + "
+            " has a pressure and a rate.",
+            "Give one of them.");
+    const auto held = std::count_if(flow.gates.begin(), flow.gates.end(),
+                                    [](const FlowGate& gate) { return gate.pressure.has_value(); });
+    if (flow.vents.empty() && (flow.gates.size() < 2 || held == 0))
+      return usage(
+          "Body "
+          " + name + "
+          ": the flow has a gate and no way out.",
+          "Make a group of its faces a vent.");
+  }
+  if (!any)
+    return usage("The flow needs a gate on a body that it may correct.",
+                 "Make a group of its faces a gate.");
+  return {};
+}
+
+}  // namespace
 
 Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
   const auto usage = [](const std::string& message, const std::string& hint) {
@@ -70,6 +114,7 @@ Result<void> check_request(const Study& study, const std::vector<Part>& parts) {
       return usage("Group \"" + group.name + "\": there is no body \"" + group.body + "\".",
                    body_list());
   }
+  if (Result<void> good = check_flow(study, names); !good) return good.error();
   for (const Part& part : parts) {
     const std::vector<BoundaryGroup> groups = groups_of(study, part.name);
     if (groups.empty()) continue;

@@ -104,7 +104,9 @@ class BodyLoop {
     MetricField<3> asked = current_.metric;
     if (const MetricFunction<3> natural = detector_->function(natural_))
       asked_at = [this, natural](const Vec<3>& x) -> Metric<3> {
-        return sizing_.apply(x, correction_.apply(x, natural(x), natural_.h_min)) * kAskedScale;
+        return sizing_.apply(x, of_flow_.apply(x, correction_.apply(x, natural(x), natural_.h_min),
+                                               natural_.h_min)) *
+               kAskedScale;
       };
     else
       for (std::size_t i = 1; i < asked.size(); ++i)
@@ -116,6 +118,64 @@ class BodyLoop {
     if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return give_up(valid.error());
     return accept(std::move(adapted->mesh), start, progress.portion(0.8, 1));
+  }
+
+  bool wants_flow() const { return has_flow(study_, part_.name); }
+
+  /// The flow through the best mesh, from where rounds of correction start. A flow that cannot be
+  /// solved is a note. Errors: cancelled.
+  Result<void> begin_flow(const Progress& progress) {
+    current_ = best_;
+    natural_.layers = settings_.layers;
+    Result<NaturalField> field =
+        detector_->field(current_.mesh, natural_, progress.portion(0, 0.3));
+    if (!field) return field.error();
+    natural_at_nodes_ = std::move(field->metric);
+    Result<void> solved = solve_flow(progress.portion(0.3, 1));
+    if (!solved && solved.error().code != Code::cancelled) {
+      outcome_.notes.push_back("Flow: " + solved.error().message + " The mesh is the natural one.");
+      return {};
+    }
+    if (!solved) return solved;
+    best_.flow = current_.flow;
+    put_flow(outcome_.records[best_record_]);
+    return {};
+  }
+
+  /// One round: the metric corrected by the flow of the round before, the mesh adapted to it, and
+  /// the flow through that. Errors: cancelled.
+  Result<void> flow_step(const Progress& progress) {
+    if (!current_.flow) return {};
+    const IterationRecord before = outcome_.records[best_record_];
+    const FlowFields& flow = *current_.flow;
+    MetricField<3> natural = natural_at_nodes_;
+    const auto ask = [&](std::size_t i) {
+      const Vec<3>& x = current_.mesh.points[i + 1];
+      natural[i + 1] =
+          sizing_.apply(x, correction_.apply(x, natural_at_nodes_[i + 1], natural_.h_min));
+    };
+    if (!parallel_each(current_.mesh.node_count(), options_.threads, progress.portion(0, 0.02),
+                       ask))
+      return cancelled_error();
+    Result<FlowCorrection> made =
+        flow_correction(current_.mesh, natural, flow, *study_.flow, of_flow_, natural_.h_min,
+                        options_.threads, progress.portion(0.02, 0.1, "flow"));
+    if (!made) return give_up(made.error());
+    of_flow_ = std::move(made->field);
+    for (std::size_t i = 1; i < natural.size(); ++i)
+      current_.metric[i] = sized(current_.mesh.points[i], natural_at_nodes_[i]);
+    const std::size_t records = outcome_.records.size();
+    if (Result<void> stepped = step(progress.portion(0.1, 0.7)); !stepped) return stepped;
+    if (outcome_.records.size() == records) return {};  // given up
+    if (Result<void> solved = solve_flow(progress.portion(0.7, 1)); !solved) {
+      if (solved.error().code == Code::cancelled) return solved;
+      outcome_.notes.push_back("Flow: " + solved.error().message);
+      return {};
+    }
+    best_.flow = current_.flow;
+    put_flow(outcome_.records.back());
+    tell_flow(before, *made);
+    return {};
   }
 
   const MeshState& best() const { return best_; }
@@ -145,6 +205,36 @@ class BodyLoop {
   }
 
  private:
+  Result<void> solve_flow(const Progress& progress) {
+    const std::shared_ptr<const MeshState> named = join({&current_}, {part_.name}, {groups()});
+    Result<FlowFields> flow = flow_through(named->mesh, flow_case_of(study_, part_.name),
+                                           study_.flow->method, options_.threads, progress);
+    if (!flow) return flow.error();
+    current_.flow = std::make_shared<const FlowFields>(std::move(*flow));
+    return {};
+  }
+
+  void put_flow(IterationRecord& record) const {
+    record.flow_rate = current_.flow->rate();
+    record.flow_pressure = current_.flow->highest_pressure();
+  }
+
+  void tell_flow(const IterationRecord& before, const FlowCorrection& made) {
+    const IterationRecord& after = outcome_.records.back();
+    char text[240];
+    std::snprintf(text, sizeof text,
+                  "Corrected by the flow: %.4g instead of %.4g elements asked for; %.6g instead of "
+                  "%.6g mm3/s at %.6g instead of %.6g MPa.",
+                  made.elements_after, made.elements_before, after.flow_rate, before.flow_rate,
+                  after.flow_pressure, before.flow_pressure);
+    outcome_.notes.push_back(text);
+  }
+
+  /// The metric asked where the natural one is `natural`.
+  Metric<3> sized(const Vec<3>& x, const Metric<3>& natural) const {
+    return sizing_.apply(x, of_flow_.apply(x, natural, natural_.h_min));
+  }
+
   /// What the boundary layers asked by hand came to.
   Result<void> tell_boundary_layers(const Progress& progress) {
     SimplexMesh<3> mesh;
@@ -204,7 +294,7 @@ class BodyLoop {
 
   /// n, or less in the first iterations of a progressive run; the last two get n.
   int layers_of_iteration(int i) const {
-    const bool early = options_.progressive && i + 1 < options_.iterations;
+    const bool early = options_.progressive && i + 1 < options_.iterations && of_flow_.empty();
     return early ? std::min(settings_.layers, i + 1) : settings_.layers;
   }
 
@@ -224,14 +314,16 @@ class BodyLoop {
     Result<NaturalField> field = detector_->field(next.mesh, natural_, progress.portion(0, 0.55));
     if (!field) return field.error();
     next.metric = std::move(field->metric);
+    if (!of_flow_.empty()) natural_at_nodes_ = next.metric;
     std::vector<char> by_hand(next.mesh.points.size(), 0);
     const auto correct = [&](std::size_t i) {
       const Metric<3> natural = next.metric[i + 1];
-      next.metric[i + 1] = sizing_.apply(next.mesh.points[i + 1], natural);
+      next.metric[i + 1] = sized(next.mesh.points[i + 1], natural);
       by_hand[i + 1] = next.metric[i + 1] != natural;
     };
-    if (!sizing_.empty() && !parallel_each(next.mesh.node_count(), options_.threads,
-                                           progress.portion(0.55, 0.6), correct))
+    const bool natural_alone = sizing_.empty() && of_flow_.empty();
+    if (!natural_alone && !parallel_each(next.mesh.node_count(), options_.threads,
+                                         progress.portion(0.55, 0.6), correct))
       return cancelled_error();
     next.thickness = std::move(field->thickness);
     Result<IterationRecord> record = measure(next, progress.portion(0.6, 0.75));
@@ -240,7 +332,7 @@ class BodyLoop {
                                            options_.threads, progress.portion(0.75, 0.95));
     if (!layers) return layers.error();
     next.layers = std::move(layers->at_node);
-    if (!outcome_.records.empty())
+    if (!outcome_.records.empty() && of_flow_.empty())
       if (Result<void> learnt = learn(next, by_hand, progress.portion(0.95, 1)); !learnt)
         return learnt;
     next.below = std::move(layers->below);
@@ -252,7 +344,7 @@ class BodyLoop {
     record->forecast_memory = forecast_.memory;
 
     const double score = layers_score(record->layers, settings_.layers);
-    if (!outcome_.records.empty()) {
+    if (!outcome_.records.empty() && of_flow_.empty()) {
       const auto before = static_cast<double>(outcome_.records.back().nodes);
       const double change = std::abs(static_cast<double>(record->nodes) - before) / before;
       const bool settled =
@@ -265,8 +357,8 @@ class BodyLoop {
           options_.until_settled && settled && (score >= 1 || score < (1 + kGained) * best_score_);
     }
     // Among meshes as good the latest is the most conforming one. The first mesh has no layers to
-    // speak of: anything adapted goes before it.
-    if (record->iteration <= 1 || score >= (1 - kGained) * best_score_) {
+    // speak of: anything adapted goes before it. What the flow corrects is asked for beyond layers.
+    if (record->iteration <= 1 || !of_flow_.empty() || score >= (1 - kGained) * best_score_) {
       best_ = next;
       best_score_ = std::max(score, record->iteration <= 1 ? 0.0 : best_score_);
       best_record_ = outcome_.records.size();
@@ -313,6 +405,8 @@ class BodyLoop {
   std::unique_ptr<const FaceGroups> groups_;
   std::unique_ptr<const Part> grouped_;
   LayerCorrection correction_;
+  CorrectionField of_flow_;
+  MetricField<3> natural_at_nodes_;  ///< of the current mesh, where a flow will correct it
   MeshForecast forecast_;
   MeshState current_, best_;
   double best_score_ = 0;
@@ -368,12 +462,16 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
   }
   tell(0, start);
 
+  const bool flows =
+      std::any_of(bodies.begin(), bodies.end(), [](const BodyLoop& b) { return b.wants_flow(); });
+  const int rounds = flows ? study.flow->rounds : 0;
   const int iterations = study.options.iterations;
+  // Each round of the flow takes as long as an iteration, the first flow half of it.
+  const double width = (0.97 - kFirstMeshShare) / (iterations + rounds + (flows ? 0.5 : 0.0));
   for (int i = 1; i <= iterations && !outcome.cancelled; ++i) {
     if (std::all_of(bodies.begin(), bodies.end(), [](const BodyLoop& b) { return b.done(); }))
       break;
     const auto since = Clock::now();
-    const double width = (0.97 - kFirstMeshShare) / iterations;
     const Progress round =
         progress.portion(kFirstMeshShare + width * (i - 1), kFirstMeshShare + width * i,
                          "iteration " + std::to_string(i));
@@ -387,6 +485,30 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
       break;
     }
     if (!outcome.cancelled) tell(i, since);
+  }
+  for (int i = 0; flows && i <= rounds && !outcome.cancelled; ++i) {
+    const auto since = Clock::now();
+    const double from = kFirstMeshShare + width * (iterations + (i == 0 ? 0 : i - 0.5));
+    const Progress round = progress.portion(from, from + (i == 0 ? 0.5 : 1) * width,
+                                            i == 0 ? "flow" : "flow " + std::to_string(i));
+    for (std::size_t b = 0; b < bodies.size() && !outcome.cancelled; ++b) {
+      if (!bodies[b].wants_flow()) continue;
+      const auto at = static_cast<double>(b);
+      const Progress part = round.portion(at / count, (at + 1) / count);
+      const Result<void> done = i == 0 ? bodies[b].begin_flow(part) : bodies[b].flow_step(part);
+      outcome.cancelled = !done;
+    }
+    if (i == 0) {  // of the mesh that was told already
+      std::vector<const IterationRecord*> last;
+      for (const BodyLoop& body : bodies) last.push_back(&body.last_record());
+      const IterationRecord all = join(last);
+      outcome.records.back().flow_rate = all.flow_rate;
+      outcome.records.back().flow_pressure = all.flow_pressure;
+      if (on_iteration && all.flow_rate > 0 && !outcome.cancelled)
+        on_iteration(outcome.records.back(),
+                     joined([](const BodyLoop& b) -> const MeshState& { return b.current(); }));
+    }
+    if (i > 0 && !outcome.cancelled) tell(outcome.records.back().iteration + 1, since);
   }
 
   outcome.state = joined([](const BodyLoop& b) -> const MeshState& { return b.best(); });

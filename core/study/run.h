@@ -12,6 +12,7 @@
 #include "core/natural/boundary_distance.h"
 #include "core/natural/layers.h"
 #include "core/optimize/generate.h"
+#include "core/study/flow_round.h"
 #include "core/study/record.h"
 #include "core/study/study.h"
 
@@ -27,6 +28,7 @@ struct MeshState {
   std::vector<PlaceBelow> below;  ///< places with fewer layers than asked, body by body
   /// Of fuzzy interfaces, regions as the bodies of the mesh; else null.
   std::shared_ptr<const Filling> filling;
+  std::shared_ptr<const FlowFields> flow;  ///< null where none was solved
 };
 
 /// What became of one body.
@@ -56,7 +58,8 @@ struct Outcome {
   double seconds = 0;
 };
 
-/// Told after each iteration, from the worker thread.
+/// Told after each iteration, from the worker thread; of the one before a correction by the flow
+/// once more, with its flow.
 using IterationSink = std::function<void(const IterationRecord&, std::shared_ptr<const MeshState>)>;
 
 /// The main loop: first mesh, then metric -> adapt -> record until layers and nodes settle.

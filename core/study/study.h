@@ -10,6 +10,7 @@
 
 #include "core/natural/detector.h"
 #include "core/sizing/sizing_object.h"
+#include "core/study/flow_entry.h"
 #include "core/study/group.h"
 #include "core/study/zone_entry.h"
 
@@ -30,6 +31,7 @@ struct BodySettings {
   /// Size across the body's borders in one mesh of all bodies, of two bodies the smaller counts;
   /// unset: a quarter of its thinnest layer.
   std::optional<double> interface_size{};
+  bool flow = true;  ///< the study's flow may correct the mesh of this body
 
   bool operator==(const BodySettings&) const = default;
 };
@@ -103,6 +105,7 @@ struct Study {
   StudyOptions options;
   std::vector<SizingObject> sizing;   ///< on top of the natural metric, in this order
   std::vector<BoundaryGroup> groups;  ///< named parts of the boundary
+  std::optional<StudyFlow> flow;      ///< unset: no flow is solved
   std::vector<CutPlane> cuts;         ///< for the eye only
   bool embed_inputs = false;          ///< a project file holds copies of the inputs
 };

@@ -32,6 +32,7 @@ BodySettings read_body(const Json& json, std::size_t index, std::string& complai
   m.number("h_min", body.h_min);
   m.number("h_max", body.h_max);
   m.number("interface_size", body.interface_size);
+  m.flag("flow", body.flow);
   m.flag("visible", body.visible);
   if (m.has("color")) {
     Vec<3> color = Vec<3>::Zero();
@@ -234,6 +235,9 @@ BoundaryGroup read_group(const Json& json, std::size_t index, std::string& compl
     group.kind =
         static_cast<GroupKind>(m.choice("kind", {"other", "gate", "vent", "symmetry", "walls"}));
   m.text("body", group.body);
+  m.number("pressure", group.pressure);
+  m.number("rate", group.rate);
+  if (group.pressure && group.rate) m.complain("rate", "and a pressure exclude each other");
   m.list("faces", group.faces);
   m.list("face_names", group.face_names);
   if (m.has("floods")) {
@@ -252,6 +256,23 @@ BoundaryGroup read_group(const Json& json, std::size_t index, std::string& compl
   }
   m.finish();
   return group;
+}
+
+StudyFlow read_flow(const Json& json, std::string& complaint) {
+  StudyFlow flow;
+  Members m(json, "flow", complaint);
+  flow.method = one_of(m, "method",
+                       {FlowMethod::acceleration, FlowMethod::velocity, FlowMethod::strain,
+                        FlowMethod::direction, FlowMethod::residual, FlowMethod::directional},
+                       flow.method, flow_method_name);
+  m.number("strength", flow.strength, false);
+  m.number("beta", flow.beta, false);
+  m.number("growth", flow.growth, false);
+  if (!(flow.growth > 1)) m.complain("growth", "must be above 1");
+  m.integer("rounds", flow.rounds, 0);
+  m.number("viscosity", flow.viscosity, false);
+  m.finish();
+  return flow;
 }
 
 CutPlane read_cut(const Json& json, std::size_t index, std::string& complaint) {
@@ -346,6 +367,8 @@ Json json_of(const BoundaryGroup& group) {
   json["name"] = group.name;
   json["kind"] = group_kind_name(group.kind);
   if (!group.body.empty()) json["body"] = group.body;
+  if (group.pressure) json["pressure"] = *group.pressure;
+  if (group.rate) json["rate"] = *group.rate;
   if (!group.faces.empty()) json["faces"] = group.faces;
   if (!group.face_names.empty()) json["face_names"] = group.face_names;
   for (const Flood& flood : group.floods)
@@ -389,6 +412,7 @@ std::string study_to_json(const Study& study) {
     if (body.h_min) b["h_min"] = *body.h_min;
     if (body.h_max) b["h_max"] = *body.h_max;
     if (body.interface_size) b["interface_size"] = *body.interface_size;
+    if (!body.flow) b["flow"] = false;
     b["visible"] = body.visible;
     if (body.color) b["color"] = *body.color;
     json["bodies"].push_back(std::move(b));
@@ -414,6 +438,13 @@ std::string study_to_json(const Study& study) {
   }
   for (const SizingObject& object : study.sizing) json["sizing"].push_back(json_of(object));
   for (const BoundaryGroup& group : study.groups) json["groups"].push_back(json_of(group));
+  if (const auto& flow = study.flow)
+    json["flow"] = {{"method", flow_method_name(flow->method)},
+                    {"strength", flow->strength},
+                    {"beta", flow->beta},
+                    {"growth", flow->growth},
+                    {"rounds", flow->rounds},
+                    {"viscosity", flow->viscosity}};
   for (const CutPlane& cut : study.cuts)
     json["cuts"].push_back({{"name", cut.name},
                             {"origin", json_of(cut.origin)},
@@ -489,6 +520,7 @@ Result<Study> study_from_json(const std::string& text, const std::string& where,
   if (m.has("options")) study.options = read_options(m.at("options"), complaint);
   each("sizing", study.sizing, read_sizing);
   each("groups", study.groups, read_group);
+  if (m.has("flow")) study.flow = read_flow(m.at("flow"), complaint);
   each("cuts", study.cuts, read_cut);
   m.finish();
   if (!complaint.empty()) return refuse(complaint, "Correct or remove it.");

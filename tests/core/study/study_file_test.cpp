@@ -21,6 +21,10 @@ Study full_study() {
   study.groups = {{"inlet", GroupKind::gate, "cover", {3, 1}, {"top \"1\""}, {{{1, 2, 3}, 0.5}}},
                   {"rest"}};
   study.groups[1].faces = {0};
+  study.groups[0].rate = 1500;
+  study.groups[1].pressure = 20;
+  study.bodies[1].flow = false;
+  study.flow = StudyFlow{FlowMethod::residual, 2, 0.5, 1.25, 3, 100};
   study.cuts = {{"middle", {1, 2, 3.25}, {0, 0.6, -0.8}, false}};
   study.options = {0.02, 0.2,   9,  3, 12345678901234567890u, Detector::neighborhood,
                    true, false, 512};
@@ -47,6 +51,12 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   ASSERT_EQ(back->groups[0].floods.size(), 1u);
   EXPECT_EQ(back->groups[0].floods[0].point, Vec<3>(1, 2, 3));
   EXPECT_EQ(back->groups[0].floods[0].angle, 0.5);
+  EXPECT_EQ(back->groups[0].rate, 1500);
+  EXPECT_FALSE(back->groups[0].pressure.has_value());
+  EXPECT_EQ(back->groups[1].pressure, 20);
+  EXPECT_TRUE(back->bodies.at(0).flow);
+  EXPECT_FALSE(back->bodies.at(1).flow);
+  EXPECT_EQ(back->flow, study.flow);
   ASSERT_EQ(back->cuts.size(), 1u);
   EXPECT_EQ(back->cuts[0].name, "middle");
   EXPECT_EQ(back->cuts[0].origin, study.cuts[0].origin);
