@@ -35,7 +35,8 @@ struct Script {
   bool cut = false;    ///< with the model cut open
   bool flat = false;   ///< the cut goes through elements
   QString near;        ///< "x,y,z,r": brings what is within r mm of a point close
-  QString color;       ///< body, quality, thickness, layers or filling
+  QString color;       ///< as option --color
+  QStringList flow;    ///< as option --flow
   QString select;      ///< group, sizing, cut or domain: the first one is selected
   int tab = 0;         ///< of the results
   QString screenshot;  ///< picture of the window
@@ -143,9 +144,14 @@ int play(ui::MainWindow& window, const Script& script) {
   }
   if (failed) return exit_code(Code::bad_input);
   bool saved = true;
-  const QStringList colors{"body", "quality", "thickness", "layers", "filling"};
+  const QStringList colors{"body",  "quality",  "thickness", "layers",   "filling",
+                           "speed", "pressure", "shear",     "indicator"};
   if (const auto color = colors.indexOf(script.color); color >= 0)
     window.view().set_color_by(ui::ColorBy(color));
+  for (const auto& [name, act] :
+       {std::pair("arrows", ui::Act::flow_arrows), std::pair("lines", ui::Act::flow_lines),
+        std::pair("levels", ui::Act::flow_levels)})
+    if (script.flow.contains(name)) window.actions()[act]->setChecked(true);
   const QStringList kinds{"body", "group", "sizing", "cut", "domain"};
   if (const auto kind = kinds.indexOf(script.select); kind > 0)
     session.select_item({ui::ItemKind(kind), 0});
@@ -204,7 +210,11 @@ int main(int argc, char** argv) {
   option("cut", "picture with a section");
   option("flat", "the section cuts through elements");
   option("near", "brings what is within R of a point close", "X,Y,Z,R");
-  option("color", "body, quality, thickness, layers or filling", "FIELD");
+  option("color",
+         "body, quality, thickness, layers, filling, or of a flow speed, pressure, shear or "
+         "indicator",
+         "FIELD");
+  option("flow", "arrows, lines, levels: what of the flow is drawn", "LIST");
   option("dark", "the dark theme");
   option("select", "group, sizing, cut or domain whose properties are shown", "KIND");
   option("tab", "tab of the results, from 0", "K");
@@ -219,6 +229,7 @@ int main(int argc, char** argv) {
   script.flat = parser.isSet("flat");
   script.near = parser.value("near");
   script.color = parser.value("color");
+  script.flow = parser.value("flow").split(',');
   script.select = parser.value("select");
   script.tab = parser.value("tab").toInt();
   script.screenshot = parser.value("screenshot");

@@ -23,6 +23,7 @@
 #include "ui/commands/study_edits.h"
 #include "ui/panels/banner.h"
 #include "ui/panels/convergence_panel.h"
+#include "ui/panels/flow_panel.h"
 #include "ui/panels/log_panel.h"
 #include "ui/panels/overlap_panel.h"
 #include "ui/panels/properties_panel.h"
@@ -132,6 +133,8 @@ void MainWindow::make_body() {
   connect(quality, &QualityPanel::range_changed, this,
           [this, quality] { view_->set_quality_range(quality->range()); });
   results_->addTab(new ReportPanel(*session_), tr("Report"));
+  flow_ = new FlowPanel(*session_, *actions_);
+  results_->addTab(flow_, tr("Flow"));
   overlaps_ = new OverlapPanel(*session_);
   results_->addTab(overlaps_, tr("Overlaps and gaps"));
   auto* log = new LogPanel;
@@ -180,7 +183,7 @@ void MainWindow::make_menus() {
   fill(tr("&Study"),
        {Act::add_group, Act::pick_faces, Act::pick_flood, line, Act::correct_near,
         Act::correct_face, Act::add_sphere, Act::add_box, Act::add_cylinder, line, Act::add_cut});
-  fill(tr("&Mesh"), {Act::run, Act::cancel, Act::forecast, line, Act::overlaps});
+  fill(tr("&Mesh"), {Act::run, Act::cancel, Act::forecast, line, Act::solve_flow, Act::overlaps});
   fill(tr("&View"), {Act::section,
                      Act::section_x,
                      Act::section_y,
@@ -191,6 +194,10 @@ void MainWindow::make_menus() {
                      Act::edges,
                      Act::features,
                      Act::perspective,
+                     line,
+                     Act::flow_arrows,
+                     Act::flow_lines,
+                     Act::flow_levels,
                      line,
                      Act::measure,
                      Act::ellipsoid,
@@ -317,6 +324,12 @@ void MainWindow::connect_actions() {
     results_->setCurrentWidget(overlaps_);
     overlaps_->look();
   });
+  connect(act[Act::solve_flow], &QAction::triggered, this, [this] {
+    (*actions_)[Act::show_results]->setChecked(true);
+    results_->setCurrentWidget(flow_);
+    banner_->hide();
+    session_->solve_flow();
+  });
   connect(act[Act::add_group], &QAction::triggered, this, [this] {
     const bool one = session_->parts().size() == 1;
     add_group(*session_, GroupKind::gate, one ? session_->body(0).name : std::string(), {});
@@ -363,6 +376,10 @@ void MainWindow::update_actions() {
                                  !session_->study().domain);
   act[Act::overlaps]->setEnabled(idle &&
                                  session_->parts().size() + session_->study().zones.size() > 1);
+  act[Act::solve_flow]->setEnabled(session_->can_flow());
+  const auto flow = session_->shown_state();
+  for (const Act a : {Act::flow_arrows, Act::flow_lines, Act::flow_levels})
+    act[a]->setEnabled(flow && flow->flow);
   for (int a = int(Act::add_group); a <= int(Act::correct_face); ++a)
     act[Act(a)]->setEnabled(parts);
   for (int a = int(Act::measure); a <= int(Act::box_zoom); ++a) act[Act(a)]->setEnabled(shown);
@@ -421,6 +438,7 @@ void MainWindow::update_status() {
                     : activity == Activity::loading   ? tr("Opening…")
                     : activity == Activity::exporting ? tr("Exporting…")
                     : activity == Activity::checking  ? tr("Looking…")
+                    : activity == Activity::flowing   ? tr("Solving the flow…")
                                                       : tr("Running…"));
     return;
   }
@@ -446,7 +464,7 @@ void MainWindow::show_progress(double fraction, const QString& phase, double sec
   QString text = phase.isEmpty() ? state_->text() : phase;
   if (session_->activity() == Activity::running) {
     // The first mesh is iteration 0: as many are there as the one under way has before it.
-    if (const auto done = session_->iterations().size(); done > 0)
+    if (const auto done = session_->iterations().size(); done > 0 && !phase.startsWith("flow"))
       text = tr("Iteration %1 of at most %2%3")
                  .arg(std::min<int>(static_cast<int>(done), session_->study().options.iterations))
                  .arg(session_->study().options.iterations)

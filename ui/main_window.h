@@ -14,6 +14,7 @@ class QTabWidget;
 namespace lamella::ui {
 
 class Banner;
+class FlowPanel;
 class Forecaster;
 class ModelView;
 class OverlapPanel;
@@ -82,6 +83,7 @@ class MainWindow : public QMainWindow {
   PropertiesPanel* properties_ = nullptr;
   QStackedWidget* stack_ = nullptr;
   QTabWidget* results_ = nullptr;
+  FlowPanel* flow_ = nullptr;
   OverlapPanel* overlaps_ = nullptr;
   QSplitter* columns_ = nullptr;
   QSplitter* rows_ = nullptr;

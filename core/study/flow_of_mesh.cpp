@@ -10,9 +10,11 @@ namespace lamella {
 
 namespace {
 
-/// Facets on CAD faces that a group of the study covers wholly get its name.
+/// Facets on CAD faces that a group of the study covers wholly get its name, and those on faces
+/// that no group covers any more become walls.
 void name_groups(const Study& study, const Part& part, SimplexMesh<3>& mesh) {
   const ReferenceSurface<3>& surface = part.surface;
+  constexpr std::int32_t in_part = -2;
   std::vector<std::int32_t> group_of(surface.faces.size(), -1);
   for (const BoundaryGroup& group : groups_of(study, part.name)) {
     const Result<std::vector<std::int32_t>> facets = facets_of(group, surface);
@@ -22,12 +24,15 @@ void name_groups(const Study& study, const Part& part, SimplexMesh<3>& mesh) {
     std::vector<std::size_t> all(surface.faces.size(), 0);
     for (const std::int32_t face : surface.facet_face) ++all[static_cast<std::size_t>(face)];
     for (std::size_t face = 0; face < all.size(); ++face)
-      if (covered[face] > 0 && covered[face] == all[face] && group_of[face] < 0)
-        group_of[face] = group_called(group.name, mesh.groups);
+      if (covered[face] > 0 && group_of[face] == -1)
+        group_of[face] =
+            covered[face] == all[face] ? group_called(group.name, mesh.groups) : in_part;
   }
+  const std::int32_t walls = group_called("walls", mesh.groups);
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     const auto face = static_cast<std::size_t>(mesh.facet_face[f]);
-    if (face < group_of.size() && group_of[face] >= 0) mesh.facet_group[f] = group_of[face];
+    if (face >= group_of.size() || group_of[face] == in_part) continue;
+    mesh.facet_group[f] = group_of[face] >= 0 ? group_of[face] : walls;
   }
 }
 

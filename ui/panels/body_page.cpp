@@ -72,6 +72,10 @@ BodyPage::BodyPage(Session& session, QWidget* parent) : QWidget(parent), session
                           tr("Across the borders of the body in one mesh of all bodies; of two\n"
                              "bodies the smaller counts. Empty: automatic"));
   form->add(tr("Interface size"), interface_);
+  flow_ = new QCheckBox(tr("corrects the mesh"));
+  flow_->setObjectName("body_flow");
+  flow_->setToolTip(tr("The flow through its gates may refine this body"));
+  form->add(tr("Flow"), flow_);
   rows_ = form;
   layout->addLayout(form);
 
@@ -136,6 +140,9 @@ void BodyPage::connect_boxes() {
     if (n < 0) return;
     session_.edit_selection(
         tr("n3"), [n](BodySettings& b) { b.layers3 = n > 0 ? std::optional(n) : std::nullopt; });
+  });
+  connect(flow_, &QCheckBox::clicked, this, [this](bool on) {
+    session_.edit_selection(tr("Flow through a body"), [on](BodySettings& b) { b.flow = on; });
   });
   connect(color_, &QPushButton::clicked, this, [this] {
     if (session_.selection().empty()) return;
@@ -240,6 +247,10 @@ void BodyPage::refresh() {
   const bool mixed_max = differs([](const BodySettings& b) { return b.h_max; });
   if (mixed_max) h_max_->setSpecialValueText(tr("different"));
   h_max_->set_length(mixed_max ? std::nullopt : first.h_max);
+  rows_->setRowVisible(flow_, session_.study().flow.has_value());
+  flow_->setCheckState(differs([](const BodySettings& b) { return b.flow; }) ? Qt::PartiallyChecked
+                       : first.flow                                          ? Qt::Checked
+                                                                             : Qt::Unchecked);
   rows_->setRowVisible(interface_, session_.study().domain.has_value());
   const bool mixed_size = differs([](const BodySettings& b) { return b.interface_size; });
   if (mixed_size) interface_->setSpecialValueText(tr("different"));

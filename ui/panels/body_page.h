@@ -5,6 +5,7 @@
 
 #include "core/study/study.h"
 
+class QCheckBox;
 class QDoubleSpinBox;
 class QFormLayout;
 class QLabel;
@@ -38,6 +39,7 @@ class BodyPage : public QWidget {
   LengthBox* h_min_;
   LengthBox* h_max_;
   LengthBox* interface_;
+  QCheckBox* flow_;
   QFormLayout* rows_;
   Folded* more_;
   QSpinBox* layers2_;

@@ -60,6 +60,15 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
     kind_->addItem(kind_title(kind), int(kind));
   kind_->setToolTip(tr("What the simulation is to take it for"));
   form->add(tr("Kind"), kind_);
+  given_ = new QComboBox;
+  given_->setObjectName("gate_given");
+  given_->addItems({tr("by its pressure"), tr("by its rate")});
+  given_->setToolTip(tr("What is known of the flow that enters; the other one follows"));
+  form->add(tr("Flow"), given_);
+  value_ = number_box(1e-3, 1e9, 1, "gate_value", tr("Of the flow through the gate"));
+  value_->setDecimals(3);
+  form->add({}, value_);
+  rows_ = form;
   body_ = styled_label({}, "soft");
   form->add(tr("Body"), body_);
   area_ = styled_label({}, "soft");
@@ -100,9 +109,24 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   });
   connect(kind_, &QComboBox::activated, this, [this] {
     const auto kind = GroupKind(kind_->currentData().toInt());
-    edit_group(session_, session_.item().index, tr("Kind of group %1"),
-               [kind](BoundaryGroup& g) { g.kind = kind; });
+    edit_group(session_, session_.item().index, tr("Kind of group %1"), [kind](BoundaryGroup& g) {
+      g.kind = kind;
+      if (kind == GroupKind::gate) return;
+      g.pressure.reset();
+      g.rate.reset();
+    });
   });
+  const auto set_gate = [this] {
+    const double value = value_->value();
+    const bool rate = given_->currentIndex() == 1;
+    edit_group(session_, session_.item().index, tr("Flow through %1"),
+               [rate, value](BoundaryGroup& g) {
+                 g.rate = rate ? std::optional(value) : std::nullopt;
+                 g.pressure = rate ? std::nullopt : std::optional(value);
+               });
+  };
+  connect(given_, &QComboBox::activated, this, set_gate);
+  connect(value_, &QDoubleSpinBox::valueChanged, this, set_gate);
   connect(take, &QPushButton::clicked, this, &GroupPage::remove_chosen);
   faces_->installEventFilter(this);
 }
@@ -145,6 +169,14 @@ void GroupPage::refresh() {
   if (!g) return;
   name_->setText(QString::fromStdString(g->name));
   kind_->setCurrentIndex(kind_->findData(int(g->kind)));
+  for (QWidget* box : std::initializer_list<QWidget*>{given_, value_})
+    rows_->setRowVisible(box, g->kind == GroupKind::gate);
+  {
+    const QSignalBlocker block(value_);
+    given_->setCurrentIndex(g->rate ? 1 : 0);
+    value_->setSuffix(g->rate ? tr(" mm³/s") : tr(" MPa"));
+    value_->setValue(g->rate.value_or(g->pressure.value_or(1)));
+  }
   faces_->clear();
   const Part* part = nullptr;
   for (const Part& p : session_.parts())

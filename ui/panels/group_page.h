@@ -6,6 +6,7 @@
 
 class QComboBox;
 class QDoubleSpinBox;
+class QFormLayout;
 class QLabel;
 class QLineEdit;
 class QListWidget;
@@ -33,6 +34,9 @@ class GroupPage : public QWidget {
   Session& session_;
   QLineEdit* name_;
   QComboBox* kind_;
+  QComboBox* given_;
+  QDoubleSpinBox* value_;
+  QFormLayout* rows_;
   QLabel* body_;
   QLabel* area_;
   QDoubleSpinBox* angle_;

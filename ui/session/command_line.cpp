@@ -108,7 +108,9 @@ std::string domain_options(const Study& study) {
 Result<std::string> group_options(const Study& study) {
   std::string text;
   for (const BoundaryGroup& group : study.groups) {
-    if (group.kind != group_kind_of(group.name))
+    const bool by_flow = study.flow && group.kind != GroupKind::other &&
+                         group.kind != GroupKind::walls;  // told by the options of the flow
+    if (group.kind != group_kind_of(group.name) && !by_flow)
       return cannot("the kind of group \"" + group.name + "\"");
     const std::string head = group.name + '=' + (group.body.empty() ? "" : group.body + ":");
     std::string faces;
@@ -119,6 +121,33 @@ Result<std::string> group_options(const Study& study) {
     for (const Flood& flood : group.floods)
       text += " --group " + quoted(head + numbers(flood.point) + '~' + number(flood.angle));
   }
+  return text;
+}
+
+std::string flow_options(const Study& study) {
+  if (!study.flow) return {};
+  const StudyFlow& flow = *study.flow;
+  const StudyFlow usual;
+  std::string text = " --flow " + std::string(flow_method_name(flow.method));
+  std::string before;
+  for (const BoundaryGroup& group : study.groups) {
+    if (group.name == before) continue;
+    before = group.name;
+    if (group.kind == GroupKind::gate && group.rate)
+      text += " --gate-rate " + quoted(group.name + '=' + number(*group.rate));
+    else if (group.kind == GroupKind::gate)
+      text += " --gate " + quoted(group.name + '=' + number(group.pressure.value_or(1)));
+    if (group.kind == GroupKind::vent) text += " --vent " + quoted(group.name);
+    if (group.kind == GroupKind::symmetry) text += " --symmetry " + quoted(group.name);
+  }
+  if (flow.strength != usual.strength) text += " --flow-strength " + number(flow.strength);
+  if (flow.beta != usual.beta) text += " --flow-beta " + number(flow.beta);
+  if (flow.growth != usual.growth) text += " --flow-growth " + number(flow.growth);
+  if (flow.rounds != usual.rounds) text += " --flow-rounds " + std::to_string(flow.rounds);
+  bool all = true;
+  for (const BodySettings& body : study.bodies) all = all && body.flow;
+  for (const BodySettings& body : study.bodies)
+    if (!all && body.flow) text += " --flow-body " + quoted(body.name);
   return text;
 }
 
@@ -172,7 +201,9 @@ Result<std::string> command_line(const Study& study) {
   if (!sizing) return sizing.error();
   const Result<std::string> groups = group_options(study);
   if (!groups) return groups.error();
-  return text + *sizing + *groups + " -o " + quoted(study.name + ".msh");
+  if (study.flow && study.flow->viscosity != StudyFlow{}.viscosity)
+    return cannot("the viscosity of the flow");
+  return text + *sizing + *groups + flow_options(study) + " -o " + quoted(study.name + ".msh");
 }
 
 std::string command_line_for(const std::string& study_file) {

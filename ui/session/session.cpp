@@ -485,6 +485,17 @@ void Session::clear_iterations() {
 void Session::add_iteration(Iteration iteration) {
   // Someone looking back at an older iteration is not torn away from it.
   const bool follow = shown_ + 1 == static_cast<int>(iterations_.size());
+  // The loop tells a mesh again once it knows the flow through it.
+  const auto same = [&](const IterationRecord& a, const IterationRecord& b) {
+    return a.iteration == b.iteration && a.nodes == b.nodes && a.elements == b.elements;
+  };
+  if (!iterations_.empty() && iteration.state->flow &&
+      same(iterations_.back().record, iteration.record)) {
+    iterations_.back() = std::move(iteration);
+    Q_EMIT iterations_changed();
+    if (follow) Q_EMIT shown_changed();
+    return;
+  }
   iterations_.push_back(std::move(iteration));
   Q_EMIT iterations_changed();
   if (follow) show_iteration(static_cast<int>(iterations_.size()) - 1);

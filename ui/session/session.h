@@ -19,7 +19,7 @@
 namespace lamella::ui {
 
 /// What the window is busy with.
-enum class Activity { idle, loading, running, exporting, checking };
+enum class Activity { idle, loading, running, exporting, checking, flowing };
 
 /// One finished iteration: its record and the mesh it left.
 struct Iteration {
@@ -123,6 +123,9 @@ class Session : public QObject {
   void run();
   /// Looks for overlaps of the bodies, and for gaps between them narrower than `gap_width` mm.
   void look_for_overlaps(double gap_width);
+  /// Solves the flow through the shown mesh, which carries it from then on.
+  void solve_flow();
+  bool can_flow() const { return activity_ == Activity::idle && shown_state() != nullptr; }
   /// What was found last; nothing once the bodies have changed.
   const std::optional<OverlapCheck>& overlaps() const { return overlaps_; }
   /// Cancels what is under way.

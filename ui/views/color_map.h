@@ -8,7 +8,18 @@
 namespace lamella::ui {
 
 /// What the mesh is colored by.
-enum class ColorBy { body, quality, thickness, layers, filling };
+enum class ColorBy {
+  body,
+  quality,
+  thickness,
+  layers,
+  filling,
+  speed,  // of the flow, up to indicator
+  pressure,
+  shear,
+  indicator
+};
+constexpr bool of_flow(ColorBy field) { return field >= ColorBy::speed; }
 
 /// Colors at equal distances over [0, 1]; interpolated, or in bands of equal width.
 struct ColorMap {

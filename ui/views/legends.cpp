@@ -10,6 +10,13 @@ namespace {
 
 QString tr(const char* text) { return QCoreApplication::translate("Scene", text); }
 
+QString flow_title(ColorBy field) {
+  return field == ColorBy::speed      ? tr("Velocity, mm/s")
+         : field == ColorBy::pressure ? tr("Pressure, MPa")
+         : field == ColorBy::shear    ? tr("Shear rate, 1/s")
+                                      : tr("Flow indicator");
+}
+
 }  // namespace
 
 Legend field_legend(ColorBy field, const MeshState& state, int layers_asked,
@@ -39,17 +46,27 @@ Legend field_legend(ColorBy field, const MeshState& state, int layers_asked,
       legend = {tr("Filled by %1").arg(QString::fromStdString(body)), 0, 1, filling_map()};
       legend.bands = {tr("0 %"), tr("< 50 %"), tr("≥ 50 %"), tr("100 %")};
       break;
+    case ColorBy::speed:
+    case ColorBy::pressure:
+    case ColorBy::shear:
+    case ColorBy::indicator: {
+      const auto [low, high] = robust_range(field_values(state, field));
+      legend = {flow_title(field), low, high, sequential_map()};
+      break;
+    }
   }
   return legend;
 }
 
 Legend missing_legend(ColorBy field, bool meshed) {
   Legend legend;
-  legend.title = field == ColorBy::quality     ? tr("Quality c(T)")
+  legend.title = of_flow(field)                ? flow_title(field)
+                 : field == ColorBy::quality   ? tr("Quality c(T)")
                  : field == ColorBy::thickness ? tr("Wall thickness")
                  : field == ColorBy::layers    ? tr("Layers through the wall")
                                                : tr("Filling ratio");
   legend.missing = !meshed                     ? tr("known once the part is meshed")
+                   : of_flow(field)            ? tr("known once the flow is solved")
                    : field == ColorBy::filling ? tr("this mesh has no fuzzy interfaces")
                                                : tr("not in this mesh");
   return legend;

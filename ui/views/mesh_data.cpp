@@ -1,7 +1,9 @@
 #include "ui/views/mesh_data.h"
 
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkIdList.h>
+#include <vtkPointData.h>
 
 #include <algorithm>
 #include <array>
@@ -42,6 +44,103 @@ vtkSmartPointer<vtkPolyData> surface_data(const ReferenceSurface<3>& surface) {
   data->SetPoints(make_points(points));
   data->SetPolys(cells);
   return data;
+}
+
+FieldArray array_of(ColorBy field) {
+  switch (field) {
+    case ColorBy::body:
+    case ColorBy::filling:
+      break;
+    case ColorBy::quality:
+      return {"quality", true};
+    case ColorBy::thickness:
+      return {"thickness", false};
+    case ColorBy::layers:
+      return {"layers", false};
+    case ColorBy::speed:
+      return {"speed", false};
+    case ColorBy::pressure:
+      return {"pressure", false};
+    case ColorBy::shear:
+      return {"shear rate", true};
+    case ColorBy::indicator:
+      return {"indicator", true};
+  }
+  return {};
+}
+
+bool has_field(const MeshState& state, ColorBy field) {
+  const std::size_t nodes = state.mesh.points.size(), elements = state.mesh.elements.size();
+  switch (field) {
+    case ColorBy::body:
+      return true;
+    case ColorBy::quality:
+      return state.quality.size() == elements;
+    case ColorBy::thickness:
+      return state.thickness.size() == nodes;
+    case ColorBy::layers:
+      return state.layers.size() == nodes;
+    case ColorBy::filling:
+      return state.filling && state.filling->first.size() == elements + 1;
+    case ColorBy::speed:
+    case ColorBy::pressure:
+    case ColorBy::shear:
+    case ColorBy::indicator:
+      return state.flow && state.flow->velocity.size() == nodes &&
+             state.flow->shear.size() == elements;
+  }
+  return false;
+}
+
+std::vector<double> field_values(const MeshState& state, ColorBy field) {
+  const auto of_nodes = [](const std::vector<double>& values) {
+    return std::vector<double>(values.begin() + 1, values.end());
+  };
+  if (!has_field(state, field)) return {};
+  if (field == ColorBy::quality) return state.quality;
+  if (field == ColorBy::thickness) return of_nodes(state.thickness);
+  if (field == ColorBy::layers) return of_nodes(state.layers);
+  if (field == ColorBy::pressure) return of_nodes(state.flow->pressure);
+  if (field == ColorBy::shear) return state.flow->shear;
+  if (field == ColorBy::indicator) return state.flow->indicator;
+  std::vector<double> speed;
+  if (field == ColorBy::speed)
+    for (std::size_t n = 1; n < state.flow->velocity.size(); ++n)
+      speed.push_back(state.flow->velocity[n].norm());
+  return speed;
+}
+
+void add_fields(const MeshState& state, vtkIntArray& element, vtkUnstructuredGrid& grid) {
+  for (const ColorBy field : {ColorBy::quality, ColorBy::thickness, ColorBy::layers, ColorBy::speed,
+                              ColorBy::pressure, ColorBy::shear, ColorBy::indicator}) {
+    const std::vector<double> values = field_values(state, field);
+    if (values.empty()) continue;
+    const auto [name, of_elements] = array_of(field);
+    vtkNew<vtkFloatArray> array;
+    array->SetName(name);
+    if (of_elements) {
+      array->SetNumberOfTuples(element.GetNumberOfTuples());
+      for (vtkIdType k = 0; k < element.GetNumberOfTuples(); ++k)
+        array->SetValue(k, static_cast<float>(values[std::size_t(element.GetValue(k))]));
+      grid.GetCellData()->AddArray(array);
+    } else {
+      array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) + 1);
+      array->SetValue(0, 0);
+      for (std::size_t k = 0; k < values.size(); ++k)
+        array->SetValue(static_cast<vtkIdType>(k) + 1, static_cast<float>(values[k]));
+      grid.GetPointData()->AddArray(array);
+    }
+  }
+  if (!has_field(state, ColorBy::speed)) return;
+  vtkNew<vtkFloatArray> velocity;
+  velocity->SetName(velocity_array);
+  velocity->SetNumberOfComponents(3);
+  velocity->SetNumberOfTuples(static_cast<vtkIdType>(state.flow->velocity.size()));
+  for (std::size_t n = 0; n < state.flow->velocity.size(); ++n) {
+    const Vec<3>& v = state.flow->velocity[n];
+    velocity->SetTuple3(static_cast<vtkIdType>(n), v[0], v[1], v[2]);
+  }
+  grid.GetPointData()->AddArray(velocity);
 }
 
 vtkSmartPointer<vtkPolyData> feature_data(const ReferenceSurface<3>& surface) {

@@ -128,6 +128,14 @@ void ModelView::connect_actions() {
     scene_->set_features(on);
     refresh();
   });
+  for (const Act act : {Act::flow_arrows, Act::flow_lines, Act::flow_levels})
+    connect(actions_[act], &QAction::toggled, this, [this] {
+      if (!scene_) return;
+      scene_->set_flow({actions_[Act::flow_arrows]->isChecked(),
+                        actions_[Act::flow_lines]->isChecked(),
+                        actions_[Act::flow_levels]->isChecked()});
+      refresh();
+    });
   connect(actions_[Act::section], &QAction::toggled, this, [this](bool on) {
     if (on == section().has_value()) return;
     if (on) {

@@ -25,6 +25,7 @@
 #include <limits>
 
 #include "ui/theme.h"
+#include "ui/views/flow_actors.h"
 #include "ui/views/legends.h"
 #include "ui/views/mesh_data.h"
 #include "ui/views/scene_actors.h"
@@ -34,9 +35,6 @@ namespace {
 
 constexpr const char* element_array = "element";
 constexpr const char* node_array = "node";
-constexpr const char* thickness_array = "thickness";
-constexpr const char* layers_array = "layers";
-constexpr const char* quality_array = "quality";
 
 }  // namespace
 
@@ -65,6 +63,9 @@ struct Scene::Impl {
   vtkNew<vtkPolyDataMapper> mesh_lines_mapper;
   vtkNew<vtkActor> hull_lines;
   vtkNew<vtkPolyDataMapper> hull_mapper;
+  FlowActors flow;
+  FlowLook flow_look;
+  std::vector<Section> sections;
   std::vector<Cut> cuts;
   ColorBy color_by = ColorBy::body;
   int layers_asked = 4;
@@ -76,7 +77,7 @@ struct Scene::Impl {
   Legend legend;
   std::array<double, 6> bounds{1, -1, 1, -1, 1, -1};
 
-  explicit Impl(vtkRenderer& r) : renderer(r) {
+  explicit Impl(vtkRenderer& r) : renderer(r), flow(r) {
     vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
     style_mesh(*mesh_actor, *mesh_mapper);
     renderer.AddActor(mesh_actor);
@@ -97,21 +98,7 @@ struct Scene::Impl {
   bool has(ColorBy field) const {
     if (field == ColorBy::body) return true;
     if (!state) return false;
-    const SimplexMesh<3>& mesh = state->mesh;
-    switch (field) {
-      case ColorBy::quality:
-        return state->quality.size() == mesh.elements.size();
-      case ColorBy::thickness:
-        return state->thickness.size() == mesh.points.size();
-      case ColorBy::layers:
-        return state->layers.size() == mesh.points.size();
-      case ColorBy::filling:
-        return state->filling && state->filling->first.size() == mesh.elements.size() + 1 &&
-               filled_region() >= 0;
-      case ColorBy::body:
-        break;
-    }
-    return true;
+    return has_field(*state, field) && (field != ColorBy::filling || filled_region() >= 0);
   }
 
   /// Of the body whose filling is shown; -1: it is not in this mesh.
@@ -182,7 +169,7 @@ struct Scene::Impl {
     }
     mesh_actor->SetVisibility(state != nullptr);
     mesh_lines->SetVisibility(state != nullptr && parts.empty() && features);
-    mesh_actor->GetProperty()->SetEdgeVisibility(edges);
+    mesh_actor->GetProperty()->SetEdgeVisibility(edges && !sees_lines());
     for (const Cut& cut : cuts) {
       cut.actor->SetVisibility(state != nullptr && !crinkle);
       cut.actor->GetProperty()->SetEdgeVisibility(edges);
@@ -224,25 +211,7 @@ struct Scene::Impl {
     grid->SetCells(VTK_TETRA, cells);
     grid->GetCellData()->AddArray(element);
     grid->GetPointData()->AddArray(node);
-    const auto add = [&](ColorBy field, const std::vector<double>& values, const char* name) {
-      if (!has(field)) return;
-      vtkNew<vtkFloatArray> array;
-      array->SetName(name);
-      array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
-      for (std::size_t k = 0; k < values.size(); ++k)
-        array->SetValue(static_cast<vtkIdType>(k), static_cast<float>(values[k]));
-      grid->GetPointData()->AddArray(array);
-    };
-    add(ColorBy::thickness, state->thickness, thickness_array);
-    add(ColorBy::layers, state->layers, layers_array);
-    if (has(ColorBy::quality)) {
-      vtkNew<vtkFloatArray> quality;
-      quality->SetName(quality_array);
-      quality->SetNumberOfTuples(element->GetNumberOfTuples());
-      for (vtkIdType k = 0; k < element->GetNumberOfTuples(); ++k)
-        quality->SetValue(k, static_cast<float>(state->quality[std::size_t(element->GetValue(k))]));
-      grid->GetCellData()->AddArray(quality);
-    }
+    add_fields(*state, *element, *grid);
     skin = nullptr;
     bared.reset();
   }
@@ -274,6 +243,7 @@ struct Scene::Impl {
     update_visibility();
     if (!grid) {
       mesh_mapper->RemoveAllInputs();
+      draw_flow();
       recolor();
       return;
     }
@@ -297,8 +267,18 @@ struct Scene::Impl {
     }
     mesh_edge = typical_edge(*mesh_mapper->GetInput());
     shade_edges();
+    draw_flow();
     recolor();
   }
+
+  /// Arrows and lines within the mesh, which lets them be seen.
+  void draw_flow() {
+    const bool on = grid && has(ColorBy::speed);
+    flow.draw(on ? grid.Get() : nullptr, on ? state.get() : nullptr, sections, flow_look, color_by);
+    mesh_actor->GetProperty()->SetOpacity(sees_lines() ? 0.3 : 1);
+    mesh_actor->GetProperty()->SetEdgeVisibility(edges && !sees_lines());
+  }
+  bool sees_lines() const { return flow_look.lines && has(ColorBy::speed); }
 
   /// Faces where the planes go through elements, each cut off by the other planes.
   void cut_through() {
@@ -346,6 +326,8 @@ struct Scene::Impl {
     mesh_actor->GetProperty()->SetDiffuse(values ? 0.28 : 0.68);
     if (color_by != ColorBy::body && has(color_by))
       legend = field_legend(color_by, *state, layers_asked, filled_by);
+    else if (color_by == ColorBy::body && flow_look.any() && has(ColorBy::speed))
+      legend = field_legend(ColorBy::speed, *state, layers_asked, filled_by);
     color(*mesh_mapper, false);
     for (const Cut& cut : cuts) {
       cut.actor->GetProperty()->SetAmbient(1);
@@ -431,13 +413,12 @@ struct Scene::Impl {
       data.GetCellData()->SetScalars(filling_bands(*state->filling, filled_region(), *element));
       mapper.SetScalarModeToUseCellData();
       mapper.InterpolateScalarsBeforeMappingOff();
-    } else if (color_by == ColorBy::quality) {
-      data.GetCellData()->SetActiveScalars(quality_array);
+    } else if (const auto [name, of_elements] = array_of(color_by); of_elements) {
+      data.GetCellData()->SetActiveScalars(name);
       mapper.SetScalarModeToUseCellData();
       mapper.InterpolateScalarsBeforeMappingOff();
     } else {
-      data.GetPointData()->SetActiveScalars(color_by == ColorBy::layers ? layers_array
-                                                                        : thickness_array);
+      data.GetPointData()->SetActiveScalars(name);
       mapper.SetScalarModeToUsePointData();
       mapper.InterpolateScalarsBeforeMappingOn();
     }
@@ -643,6 +624,7 @@ void Scene::set_color_by(ColorBy color_by, int layers_asked, const std::string& 
   impl_->filled_by = body;
   impl_->color_by = color_by;
   impl_->layers_asked = layers_asked;
+  impl_->draw_flow();
   impl_->recolor();
 }
 
@@ -654,8 +636,16 @@ void Scene::set_sections(const std::vector<Section>& sections) {
     impl_->renderer.AddActor(cut.actor);
     impl_->cuts.push_back(std::move(cut));
   }
+  impl_->sections = sections;
   clip_parts();
   impl_->update_mesh();
+}
+
+void Scene::set_flow(const FlowLook& look) {
+  if (look == impl_->flow_look) return;
+  impl_->flow_look = look;
+  impl_->draw_flow();
+  impl_->recolor();
 }
 
 void Scene::clip_parts() {

@@ -11,16 +11,11 @@
 #include "core/geometry/surface.h"
 #include "core/study/run.h"
 #include "ui/views/color_map.h"
+#include "ui/views/section.h"
 
 class vtkRenderer;
 
 namespace lamella::ui {
-
-/// A plane; what lies on the side its normal points to is cut away. mm.
-struct Section {
-  Vec<3> origin = Vec<3>::Zero();
-  Vec<3> normal = Vec<3>::UnitX();
-};
 
 /// What lies under a pixel.
 struct Picked {
@@ -65,6 +60,8 @@ class Scene {
   void set_sections(const std::vector<Section>& sections);
   /// True (the default): the section leaves whole elements; false: it cuts through them.
   void set_crinkle(bool on);
+  /// Arrows, lines and level sets of the mesh's flow.
+  void set_flow(const FlowLook& look);
   void set_edges(bool on);
   void set_features(bool on);
 

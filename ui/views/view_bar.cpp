@@ -67,6 +67,11 @@ ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(a
   colors_->addItem(tr("Wall thickness"), int(ColorBy::thickness));
   colors_->addItem(tr("Layers measured"), int(ColorBy::layers));
   colors_->addItem(tr("Filling ratio"), int(ColorBy::filling));
+  colors_->insertSeparator(colors_->count());
+  colors_->addItem(tr("Velocity"), int(ColorBy::speed));
+  colors_->addItem(tr("Pressure"), int(ColorBy::pressure));
+  colors_->addItem(tr("Shear rate"), int(ColorBy::shear));
+  colors_->addItem(tr("Flow indicator"), int(ColorBy::indicator));
   colors_->setMinimumWidth(140);
   row->addWidget(colors_);
   bodies_ = new QComboBox;

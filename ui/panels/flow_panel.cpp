@@ -1,0 +1,293 @@
+#include "ui/panels/flow_panel.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QSlider>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <cmath>
+
+#include "ui/actions/actions.h"
+#include "ui/panels/form.h"
+#include "ui/session/session.h"
+#include "ui/theme.h"
+#include "ui/views/plot.h"
+
+namespace lamella::ui {
+namespace {
+
+constexpr int kSteps = 40;      // of the slider on each side of 1
+constexpr double kDecades = 1;  // on each side
+
+double weight_at(int position) { return std::pow(10, kDecades * position / kSteps); }
+int position_of(double weight) {
+  return static_cast<int>(std::lround(kSteps * std::log10(weight) / kDecades));
+}
+
+QString method_title(FlowMethod method) {
+  switch (method) {
+    case FlowMethod::acceleration:
+      return FlowPanel::tr("Acceleration");
+    case FlowMethod::velocity:
+      return FlowPanel::tr("Velocity");
+    case FlowMethod::strain:
+      return FlowPanel::tr("Strain rate");
+    case FlowMethod::direction:
+      return FlowPanel::tr("Change of direction");
+    case FlowMethod::residual:
+      return FlowPanel::tr("Residual");
+    case FlowMethod::directional:
+      return FlowPanel::tr("Directional residual");
+  }
+  return {};
+}
+
+QString cell(const QString& text, bool number) {
+  return QString("<td align='%1' style='padding: 2px 14px 2px 0'>%2</td>")
+      .arg(number ? "right" : "left", text);
+}
+
+}  // namespace
+
+FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
+    : QWidget(parent), session_(session) {
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(14, 8, 8, 8);
+  layout->setSpacing(18);
+  layout->addWidget(make_settings());
+  auto* middle = new QVBoxLayout;
+  middle->setSpacing(6);
+  auto* tools = new QHBoxLayout;
+  tools->setSpacing(4);
+  for (const Act act : {Act::solve_flow, Act::flow_arrows, Act::flow_lines, Act::flow_levels}) {
+    auto* button = new QToolButton;
+    button->setDefaultAction(actions[act]);
+    button->setToolButtonStyle(act == Act::solve_flow ? Qt::ToolButtonTextBesideIcon
+                                                      : Qt::ToolButtonTextOnly);
+    tools->addWidget(button);
+  }
+  tools->addStretch(1);
+  middle->addLayout(tools);
+  found_ = styled_label({}, "soft");
+  found_->setObjectName("flow_found");
+  found_->setTextFormat(Qt::RichText);
+  found_->setWordWrap(true);
+  found_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  middle->addWidget(found_, 1);
+  layout->addLayout(middle, 1);
+  residuals_ = new Plot(tr("Residual"));
+  residuals_->setObjectName("residual_plot");
+  residuals_->set_logarithmic(true);
+  residuals_->set_decimals(10);
+  layout->addWidget(residuals_, 1);
+
+  wait_.setSingleShot(true);
+  wait_.setInterval(250);
+  connect(&wait_, &QTimer::timeout, this, &FlowPanel::count);
+  connect(&worker_, &Worker::finished, this, &FlowPanel::refresh);
+  for (const auto signal : {&Session::study_changed, &Session::shown_changed,
+                            &Session::activity_changed, &Session::parts_changed})
+    connect(&session, signal, this, &FlowPanel::refresh);
+  connect_boxes();
+  refresh();
+}
+
+QWidget* FlowPanel::make_settings() {
+  auto* box = new QWidget;
+  box->setFixedWidth(310);
+  auto* layout = new QVBoxLayout(box);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(4);
+  correct_ = new QCheckBox(tr("Correct the mesh by the flow"));
+  correct_->setObjectName("flow_correct");
+  correct_->setToolTip(
+      tr("A run solves the flow once the mesh has settled, refines where the flow "
+         "asks for it, and meshes again"));
+  layout->addWidget(correct_);
+  auto* form = new Form;
+  form->setVerticalSpacing(4);
+  method_ = new QComboBox;
+  method_->setObjectName("flow_method");
+  for (const FlowMethod method : kFlowMethods)
+    method_->addItem(method_title(method), static_cast<int>(method));
+  method_->setToolTip(
+      tr("What the mesh is to follow: the gradient of a field, or an indicator\n"
+         "that is made even over the elements"));
+  form->add(tr("By"), method_);
+  auto* weight = new QWidget;
+  auto* row = new QHBoxLayout(weight);
+  row->setContentsMargins(0, 0, 0, 0);
+  weight_ = new QSlider(Qt::Horizontal);
+  weight_->setObjectName("flow_weight");
+  weight_->setRange(-kSteps, kSteps);
+  row->addWidget(weight_, 1);
+  weight_text_ = styled_label({}, "soft");
+  weight_text_->setFixedWidth(40);
+  weight_text_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  row->addWidget(weight_text_);
+  weight_title_ = new QLabel;
+  form->add(tr("Strength"), weight);
+  weight_title_ = qobject_cast<QLabel*>(form->labelForField(weight));
+  growth_ = number_box(1.05, 20, 0.1, "flow_growth",
+                       tr("Elements that the correction may ask for, over those without it"));
+  growth_->setPrefix("× ");
+  form->add(tr("Elements at most"), growth_);
+  rounds_ = integer_box(0, 20, "flow_rounds",
+                        tr("Rounds of flow and correction; 0: the flow is solved alone"));
+  form->add(tr("Rounds"), rounds_);
+  layout->addLayout(form);
+  expected_ = styled_label({}, "soft");
+  expected_->setObjectName("flow_expected");
+  expected_->setWordWrap(true);
+  layout->addWidget(expected_);
+  layout->addStretch(1);
+  return box;
+}
+
+void FlowPanel::connect_boxes() {
+  connect(correct_, &QCheckBox::clicked, this, [this](bool on) {
+    Study study = session_.study();
+    study.flow = on ? std::optional(StudyFlow{}) : std::nullopt;
+    session_.edit(on ? tr("Correct by the flow") : tr("No correction by the flow"),
+                  std::move(study));
+  });
+  connect(method_, &QComboBox::activated, this, [this] {
+    const auto method = static_cast<FlowMethod>(method_->currentData().toInt());
+    edit(tr("Correct by %1").arg(method_title(method)),
+         [method](StudyFlow& flow) { flow.method = method; });
+  });
+  connect(weight_, &QSlider::sliderPressed, this, [this] { merge_ = session_.new_merge(); });
+  connect(weight_, &QSlider::valueChanged, this, [this](int position) {
+    const double weight = weight_at(position);
+    edit(
+        tr("Strength of the flow"),
+        [weight](StudyFlow& flow) {
+          // To the right is more of it.
+          if (adds_gradient(flow.method))
+            flow.strength = weight;
+          else
+            flow.beta = 1 / weight;
+        },
+        merge_);
+  });
+  connect(growth_, &QDoubleSpinBox::valueChanged, this, [this](double growth) {
+    edit(tr("Elements for the flow"), [growth](StudyFlow& flow) { flow.growth = growth; });
+  });
+  connect(rounds_, &QSpinBox::valueChanged, this, [this](int rounds) {
+    edit(tr("Rounds of the flow"), [rounds](StudyFlow& flow) { flow.rounds = rounds; });
+  });
+}
+
+void FlowPanel::edit(const QString& what, const std::function<void(StudyFlow&)>& change,
+                     int merge) {
+  Study study = session_.study();
+  if (!study.flow) return;
+  change(*study.flow);
+  session_.edit(what, std::move(study), merge);
+}
+
+void FlowPanel::refresh() {
+  const std::optional<StudyFlow>& asked = session_.study().flow;
+  const StudyFlow flow = asked.value_or(StudyFlow{});
+  const bool gradient = adds_gradient(flow.method);
+  const double weight = gradient ? flow.strength : 1 / flow.beta;
+  {
+    const QSignalBlocker blocks[] = {QSignalBlocker(weight_), QSignalBlocker(growth_),
+                                     QSignalBlocker(rounds_)};
+    correct_->setChecked(asked.has_value());
+    method_->setCurrentIndex(method_->findData(static_cast<int>(flow.method)));
+    weight_->setValue(position_of(weight));
+    growth_->setValue(flow.growth);
+    rounds_->setValue(flow.rounds);
+  }
+  correct_->setEnabled(session_.has_bodies());
+  for (QWidget* box : std::initializer_list<QWidget*>{method_, weight_, growth_, rounds_})
+    box->setEnabled(asked.has_value());
+  weight_title_->setText(gradient ? tr("Strength") : tr("Mean error"));
+  weight_->setToolTip(gradient ? tr("To the right the flow asks for smaller sizes")
+                               : tr("To the right the mean error is to be smaller"));
+  weight_text_->setText(gradient ? QString::number(weight, 'g', 2)
+                                 : QString("× %1").arg(flow.beta, 0, 'g', 2));
+  const auto state = session_.shown_state();
+  if (asked && state && state->flow && !preview() && session_.activity() == Activity::idle)
+    wait_.start();
+  expected_->setText(preview_text());
+  show_flow();
+}
+
+std::optional<FlowPreview> FlowPanel::preview() const {
+  const bool known = previewed_ && previewed_ == session_.shown_state() &&
+                     previewed_with_ == session_.study().flow.value_or(StudyFlow{});
+  return known ? preview_ : std::nullopt;
+}
+
+QString FlowPanel::preview_text() const {
+  const auto state = session_.shown_state();
+  if (!session_.study().flow) return {};
+  if (!state || !state->flow) return tr("Solve the flow to see what the correction comes to.");
+  if (!preview()) return tr("Counting…");
+  return tr("About %L1 nodes instead of %L2, × %3.")
+      .arg(preview_->nodes_after, 0, 'f', 0)
+      .arg(preview_->nodes_before, 0, 'f', 0)
+      .arg(preview_->nodes_after / preview_->nodes_before, 0, 'f', 2);
+}
+
+void FlowPanel::count() {
+  const auto state = session_.shown_state();
+  const auto study = session_.study_value();
+  if (!state || !state->flow || !study->flow || session_.activity() != Activity::idle) return;
+  if (worker_.busy()) {
+    wait_.start();
+    return;
+  }
+  worker_.start([this, state, study](const Progress& progress) -> Worker::Done {
+    const Result<FlowPreview> found = preview_flow(*state, *study, progress);
+    return [this, state, study, found] {
+      if (!found) return;
+      preview_ = *found;
+      previewed_ = state;
+      previewed_with_ = *study->flow;
+    };
+  });
+}
+
+void FlowPanel::show_flow() {
+  const auto state = session_.shown_state();
+  const FlowFields* flow = state ? state->flow.get() : nullptr;
+  if (plotted_ != state) {
+    plotted_ = state;
+    Series series{tr("residual"), QColor(0x1d, 0x6f, 0xc4), {}};
+    if (flow) series.values = flow->residuals;
+    residuals_->set_series({series});
+  }
+  if (!flow) {
+    found_->setText(
+        session_.activity() == Activity::flowing ? tr("Solving… Shift+F5 cancels.")
+        : !state ? tr("Make a gate and a vent of groups of faces, and run: the flow between them "
+                      "is solved through the mesh.")
+                 : tr("No flow is known through this mesh. It needs a group that is a gate and "
+                      "one that is a vent."));
+    return;
+  }
+  QString html =
+      QString("<table cellspacing='0'><tr style='color:%1'>").arg(theme::soft_text.name());
+  html += cell({}, false) + cell(tr("mm³/s"), true) + cell(tr("MPa"), true) + "</tr>";
+  for (const OpeningFlow& o : flow->openings)
+    html += "<tr>" +
+            cell((o.rate < 0 ? tr("in by %1") : tr("out by %1"))
+                     .arg(QString::fromStdString(o.group).toHtmlEscaped()),
+                 false) +
+            cell(QString::number(std::abs(o.rate), 'g', 6), true) +
+            cell(QString::number(o.pressure, 'g', 4), true) + "</tr>";
+  html += "</table>";
+  if (!flow->residuals.empty())
+    html += "<p>" +
+            tr("%1 iterations; %2 of what enters is lost.")
+                .arg(flow->residuals.size() - 1)
+                .arg(flow->imbalance, 0, 'g', 2) +
+            "</p>";
+  found_->setText(html);
+}
+
+}  // namespace lamella::ui
