@@ -100,21 +100,6 @@ vtkSmartPointer<vtkPolyData> feature_data(const SimplexMesh<3>& mesh) {
   return data;
 }
 
-std::vector<std::array<NodeId, 3>> sorted_faces(vtkPolyData& data, vtkIntArray& node) {
-  std::vector<std::array<NodeId, 3>> faces;
-  faces.reserve(static_cast<std::size_t>(data.GetNumberOfCells()));
-  vtkNew<vtkIdList> corner;
-  for (vtkIdType f = 0; f < data.GetNumberOfCells(); ++f) {
-    data.GetCellPoints(f, corner);
-    std::array<NodeId, 3> face{node.GetValue(corner->GetId(0)), node.GetValue(corner->GetId(1)),
-                               node.GetValue(corner->GetId(2))};
-    std::sort(face.begin(), face.end());
-    faces.push_back(face);
-  }
-  std::sort(faces.begin(), faces.end());
-  return faces;
-}
-
 vtkSmartPointer<vtkFloatArray> filling_bands(const Filling& filling, std::int32_t region,
                                              vtkIntArray& element) {
   auto bands = vtkSmartPointer<vtkFloatArray>::New();
@@ -145,12 +130,14 @@ std::pair<double, double> robust_range(std::vector<double> values) {
 }
 
 double typical_edge(vtkPolyData& data) {
+  // Some thousand polygons tell as much as all of them.
+  constexpr vtkIdType enough = 5000;
+  const vtkIdType stride = std::max<vtkIdType>(1, data.GetNumberOfCells() / enough);
   std::vector<double> lengths;
-  lengths.reserve(static_cast<std::size_t>(3 * data.GetNumberOfCells()));
   vtkNew<vtkIdList> corners;
   Vec<3> a;
   Vec<3> b;
-  for (vtkIdType c = 0; c < data.GetNumberOfCells(); ++c) {
+  for (vtkIdType c = 0; c < data.GetNumberOfCells(); c += stride) {
     data.GetCellPoints(c, corners);
     for (vtkIdType k = 0; k < corners->GetNumberOfIds(); ++k) {
       data.GetPoint(corners->GetId(k), a.data());

@@ -6,7 +6,6 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -28,9 +27,6 @@ vtkSmartPointer<vtkPolyData> feature_data(const ReferenceSurface<3>& surface);
 
 /// Edges between boundary facets of different CAD faces: the features of a mesh without its part.
 vtkSmartPointer<vtkPolyData> feature_data(const SimplexMesh<3>& mesh);
-
-/// The triangles, each as its nodes in rising order; sorted. `node`: [point] of the mesh.
-std::vector<std::array<NodeId, 3>> sorted_faces(vtkPolyData& data, vtkIntArray& node);
 
 /// [face] the band of its element in `filling_map`, in [0, 1]. `element`: [face].
 vtkSmartPointer<vtkFloatArray> filling_bands(const Filling& filling, std::int32_t region,
