@@ -9,6 +9,7 @@
 #include <QSurfaceFormat>
 #include <QTabWidget>
 #include <QTimer>
+#include <QWindow>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +19,7 @@
 #include "app/window_services.h"
 #include "core/base/version.h"
 #include "ui/actions/actions.h"
+#include "ui/language.h"
 #include "ui/main_window.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
@@ -218,6 +220,7 @@ int main(int argc, char** argv) {
   option("dark", "the dark theme");
   option("select", "group, sizing, cut or domain whose properties are shown", "KIND");
   option("tab", "tab of the results, from 0", "K");
+  option("leave", "leave as soon as the window can be used");
   option("screenshot", "picture of the window, then leave", "FILE");
   option("section", "picture of a section, then leave", "FILE");
   parser.process(application);
@@ -235,10 +238,17 @@ int main(int argc, char** argv) {
   script.screenshot = parser.value("screenshot");
   script.section = parser.value("section");
 
+  ui::speak(application, QSettings().value("language").toString());
   ui::apply_theme(application, QSettings().value("dark", false).toBool() || parser.isSet("dark"));
   ui::MainWindow window(window_services(
       QStandardPaths::writableLocation(QStandardPaths::CacheLocation).toStdString() + "/samples"));
   window.show();
+  if (parser.isSet("leave")) {
+    while (!window.windowHandle()->isExposed())
+      QApplication::processEvents(QEventLoop::WaitForMoreEvents);
+    QApplication::processEvents();
+    return 0;
+  }
   window.open_files(parser.positionalArguments());
   if (!script.any() && parser.positionalArguments().isEmpty()) window.tools().offer_recovery();
   return script.any() ? play(window, script) : QApplication::exec();

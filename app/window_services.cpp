@@ -29,6 +29,9 @@ ui::Services window_services(const std::filesystem::path& sample_folder) {
     if (const Result<void> written = write_sample(name, file); !written) return written.error();
     return file;
   };
+  services.thickness_map = [](const ReferenceSurface<3>& surface, const Progress& progress) {
+    return thickness_map(surface, 0, progress);
+  };
   services.read_mesh = [](const std::filesystem::path& file) { return read_mesh(file); };
   return services;
 }

@@ -3,26 +3,31 @@
 include(GNUInstallDirs)
 
 set(share ${CMAKE_INSTALL_DATADIR})
+find_program(GZIP gzip)
+# packed(NAME FOLDER): the file, as small as gzip makes it, into the folder.
+function(packed name folder)
+  if(NOT GZIP)
+    return()
+  endif()
+  set(file ${CMAKE_BINARY_DIR}/${name}.gz)
+  add_custom_command(OUTPUT ${file}
+    COMMAND ${GZIP} -9nc ${PROJECT_SOURCE_DIR}/packaging/${name} > ${file}
+    DEPENDS ${PROJECT_SOURCE_DIR}/packaging/${name} VERBATIM)
+  add_custom_target(packed_${name} ALL DEPENDS ${file})
+  install(FILES ${file} DESTINATION ${folder})
+endfunction()
 # Netgen's libraries lie in a folder of their own, which the installed programs must remember.
 if(TARGET lamella-cli)
   set_target_properties(lamella-cli PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
   install(TARGETS lamella-cli)
-  find_program(GZIP gzip)
-  if(GZIP)
-    foreach(page lamella-cli.1 lamella-cli-adapt.1 lamella-cli-flow.1)
-      set(packed ${CMAKE_BINARY_DIR}/${page}.gz)
-      add_custom_command(OUTPUT ${packed}
-        COMMAND ${GZIP} -9nc ${CMAKE_CURRENT_LIST_DIR}/${page} > ${packed}
-        DEPENDS ${CMAKE_CURRENT_LIST_DIR}/${page} VERBATIM)
-      list(APPEND pages ${packed})
-    endforeach()
-    add_custom_target(lamella_man ALL DEPENDS ${pages})
-    install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-  endif()
+  packed(lamella-cli.1 ${CMAKE_INSTALL_MANDIR}/man1)
+  packed(lamella-cli-adapt.1 ${CMAKE_INSTALL_MANDIR}/man1)
+  packed(lamella-cli-flow.1 ${CMAKE_INSTALL_MANDIR}/man1)
 endif()
 if(TARGET lamella)
   set_target_properties(lamella PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
   install(TARGETS lamella)
+  packed(lamella.1 ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.desktop DESTINATION ${share}/applications)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.metainfo.xml DESTINATION ${share}/metainfo)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.mime.xml DESTINATION ${share}/mime/packages
@@ -30,6 +35,7 @@ if(TARGET lamella)
   install(FILES ${PROJECT_SOURCE_DIR}/resources/icons/lamella.svg
           DESTINATION ${share}/icons/hicolor/scalable/apps RENAME org.lamella.Lamella.svg)
 endif()
+packed(changelog ${share}/doc/lamella)
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${share}/doc/lamella)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${share}/doc/lamella)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/resources/docs/ DESTINATION ${share}/doc/lamella/docs)
@@ -53,5 +59,6 @@ if(NGLIB_LIBRARY)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${NGLIB_FOLDER})
 endif()
 # What is linked is found by dpkg-shlibdeps; the window falls back to another font without this one.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS fonts-inter)
+# Qt's own buttons speak the language of the window with the translations.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "fonts-inter, qt6-translations-l10n")
 include(CPack)

@@ -1,5 +1,6 @@
 #include "ui/main_window.h"
 
+#include <QAbstractButton>
 #include <QCloseEvent>
 #include <QDragEnterEvent>
 #include <QFileDialog>
@@ -35,6 +36,7 @@
 #include "ui/session/recent_files.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 #include "ui/views/model_view.h"
 #include "ui/views/vtk_view.h"
 #include "ui/window_tools.h"
@@ -89,6 +91,10 @@ MainWindow::MainWindow(Services services, QWidget* parent)
   make_status_bar();
   connect_session();
   connect_actions();
+  // Buttons that are icons say what they do to those who do not see them.
+  for (auto* button : findChildren<QAbstractButton*>())
+    if (button->text().isEmpty() && button->accessibleName().isEmpty())
+      button->setAccessibleName(button->toolTip());
   update_actions();
   update_title();
   update_status();
@@ -125,6 +131,7 @@ void MainWindow::make_body() {
   auto* inner = new QVBoxLayout(panel);
   inner->setContentsMargins(1, 1, 1, 1);
   results_ = new QTabWidget;
+  results_->setAccessibleName(tr("Results"));
   results_->setDocumentMode(true);
   results_->tabBar()->setDrawBase(false);
   results_->addTab(new ConvergencePanel(*session_), tr("Convergence"));
@@ -181,9 +188,11 @@ void MainWindow::make_menus() {
   menuBar()->actions().front()->menu()->insertMenu((*actions_)[Act::add], tools_->recent_menu());
   fill(tr("&Edit"), {Act::undo, Act::redo, line, Act::remove});
   fill(tr("&Study"),
-       {Act::add_group, Act::pick_faces, Act::pick_flood, line, Act::correct_near,
+       {Act::zone_ball, Act::zone_box, Act::zone_cylinder, Act::zone_half_space, line,
+        Act::add_group, Act::pick_faces, Act::pick_flood, line, Act::correct_near,
         Act::correct_face, Act::add_sphere, Act::add_box, Act::add_cylinder, line, Act::add_cut});
-  fill(tr("&Mesh"), {Act::run, Act::cancel, Act::forecast, line, Act::solve_flow, Act::overlaps});
+  fill(tr("&Mesh"),
+       {Act::run, Act::pause, Act::cancel, Act::forecast, line, Act::solve_flow, Act::overlaps});
   fill(tr("&View"), {Act::section,
                      Act::section_x,
                      Act::section_y,
@@ -194,6 +203,7 @@ void MainWindow::make_menus() {
                      Act::edges,
                      Act::features,
                      Act::perspective,
+                     Act::compare,
                      line,
                      Act::flow_arrows,
                      Act::flow_lines,
@@ -215,7 +225,7 @@ void MainWindow::make_menus() {
                      Act::show_study,
                      Act::show_properties,
                      Act::show_results});
-  fill(tr("&Help"), {Act::search, Act::shortcuts, line, Act::about});
+  fill(tr("&Help"), {Act::search, Act::shortcuts, line, Act::journal, Act::about});
 }
 
 void MainWindow::make_tool_bar() {
@@ -234,6 +244,7 @@ void MainWindow::make_tool_bar() {
   add(Act::save, tr("Save"));
   bar->addSeparator();
   add(Act::run, tr("Run"), "run");
+  add(Act::pause, tr("Pause"));
   add(Act::cancel, tr("Cancel"));
   bar->addSeparator();
   add(Act::add_group, tr("Group"));
@@ -292,6 +303,7 @@ void MainWindow::connect_session() {
   connect(session_, &Session::saved, this, [this](const QString& file) {
     statusBar()->showMessage(tr("Saved %1").arg(file), 4000);
   });
+  connect(&Units::get(), &Units::changed, session_, &Session::study_changed);
   connect(forecaster_, &Forecaster::changed, this, &MainWindow::update_status);
   connect(session_, &Session::exported, this, [this](const QString& file, const QString& notes) {
     if (notes.isEmpty())
@@ -337,10 +349,13 @@ void MainWindow::connect_actions() {
   });
   for (const Act kind : {Act::add_sphere, Act::add_box, Act::add_cylinder})
     connect(act[kind], &QAction::triggered, this, [this, kind] { add_size(kind); });
+  for (int a = int(Act::zone_ball); a <= int(Act::zone_half_space); ++a)
+    connect(act[Act(a)], &QAction::triggered, this, [this, a] { add_body(Act(a)); });
   connect(act[Act::export_mesh], &QAction::triggered, this, &MainWindow::ask_export);
   connect(act[Act::save_picture], &QAction::triggered, this, &MainWindow::ask_picture);
   connect(act[Act::quit], &QAction::triggered, this, &QWidget::close);
   connect(act[Act::run], &QAction::triggered, this, [this] { start_run(); });
+  connect(act[Act::pause], &QAction::triggered, session_, &Session::pause);
   connect(act[Act::cancel], &QAction::triggered, session_, &Session::cancel);
   QUndoStack* undo = session_->undo_stack();
   connect(act[Act::undo], &QAction::triggered, undo, &QUndoStack::undo);
@@ -382,10 +397,16 @@ void MainWindow::update_actions() {
     act[a]->setEnabled(flow && flow->flow);
   for (int a = int(Act::add_group); a <= int(Act::correct_face); ++a)
     act[Act(a)]->setEnabled(parts);
+  // They need no part to begin with.
+  for (int a = int(Act::zone_ball); a <= int(Act::zone_half_space); ++a)
+    act[Act(a)]->setEnabled(idle && (parts || !shown));
   for (int a = int(Act::measure); a <= int(Act::box_zoom); ++a) act[Act(a)]->setEnabled(shown);
   act[Act::add_cut]->setEnabled(shown);
   act[Act::run]->setEnabled(session_->can_run());
   act[Act::cancel]->setEnabled(!idle && !session_->cancelling());
+  const bool running = session_->activity() == Activity::running && !session_->cancelling();
+  act[Act::pause]->setEnabled(running);
+  act[Act::pause]->setChecked(running && session_->paused());
   act[Act::export_mesh]->setEnabled(idle && session_->shown_state() != nullptr);
   act[Act::undo]->setEnabled(session_->undo_stack()->canUndo());
   act[Act::redo]->setEnabled(session_->undo_stack()->canRedo());
@@ -395,6 +416,8 @@ void MainWindow::update_actions() {
   act[Act::redo]->setToolTip(redo.isEmpty() ? tr("Redo") : tr("Redo: %1").arg(redo));
   for (int a = int(Act::section); a <= int(Act::section_z); ++a) act[Act(a)]->setEnabled(shown);
   for (int a = int(Act::fit); a <= int(Act::view_bottom); ++a) act[Act(a)]->setEnabled(shown);
+  act[Act::compare]->setEnabled(session_->iterations().size() > 1);
+  if (session_->iterations().size() < 2) act[Act::compare]->setChecked(false);
   act[Act::save_picture]->setEnabled(shown);
   stack_->setCurrentWidget(shown ? static_cast<QWidget*>(view_) : welcome_);
 }
@@ -433,8 +456,9 @@ void MainWindow::update_status() {
                                            .arg(forecaster_->total().memory, 0, 'f', 0));
   progress_->setVisible(activity != Activity::idle);
   if (activity != Activity::idle) {
-    progress_->setValue(0);
+    if (!session_->paused()) progress_->setValue(0);
     state_->setText(session_->cancelling()            ? tr("Cancelling…")
+                    : session_->paused()              ? tr("Paused")
                     : activity == Activity::loading   ? tr("Opening…")
                     : activity == Activity::exporting ? tr("Exporting…")
                     : activity == Activity::checking  ? tr("Looking…")
@@ -460,7 +484,7 @@ void MainWindow::update_status() {
 void MainWindow::show_progress(double fraction, const QString& phase, double seconds_left) {
   if (session_->activity() == Activity::idle) return;
   progress_->setValue(static_cast<int>(fraction * 1000));
-  if (session_->cancelling()) return;
+  if (session_->cancelling() || session_->paused()) return;
   QString text = phase.isEmpty() ? state_->text() : phase;
   if (session_->activity() == Activity::running) {
     // The first mesh is iteration 0: as many are there as the one under way has before it.
@@ -565,6 +589,29 @@ void MainWindow::add_size(Act kind) {
     add_sizing(*session_, body.name, tr("cylinder"),
                CylinderShape{middle - reach * Vec<3>::UnitZ(), middle + reach * Vec<3>::UnitZ(),
                              0.5 * reach});
+}
+
+void MainWindow::add_body(Act kind) {
+  Vec<3> low = Vec<3>::Constant(-5), high = Vec<3>::Constant(5);
+  const auto& b = view_->bounds();
+  if (b[0] < b[1]) {
+    low = {b[0], b[2], b[4]};
+    high = {b[1], b[3], b[5]};
+  }
+  // Numbers that are good to read and to change.
+  const double reach = QString::number(0.2 * (high - low).norm(), 'g', 2).toDouble();
+  const Vec<3> middle = 0.5 * (low + high);
+  if (kind == Act::zone_ball)
+    add_zone(*session_, tr("ball"), ZoneBall{middle, reach});
+  else if (kind == Act::zone_box)
+    add_zone(*session_, tr("box"),
+             ZoneBox{middle - Vec<3>::Constant(reach), middle + Vec<3>::Constant(reach)});
+  else if (kind == Act::zone_cylinder)
+    add_zone(*session_, tr("cylinder"),
+             ZoneCylinder{middle - reach * Vec<3>::UnitZ(), middle + reach * Vec<3>::UnitZ(),
+                          0.5 * reach});
+  else
+    add_zone(*session_, tr("half-space"), ZoneHalfSpace{Vec<3>::UnitZ(), middle[2]});
 }
 
 void MainWindow::start_run() {

@@ -66,6 +66,8 @@ class MainWindow : public QMainWindow {
   bool save(bool ask_name);
   /// False when the user would rather keep what is unsaved.
   bool may_drop();
+  /// A body by formula, in the middle of what is there.
+  void add_body(Act kind);
   void add_size(Act kind);
   void start_run();
   void ask_export();

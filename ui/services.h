@@ -12,6 +12,7 @@
 #include "core/cad/load_parts.h"
 #include "core/io/export_certificate.h"
 #include "core/io/mesh_format.h"
+#include "core/natural/thickness_map.h"
 #include "core/optimize/generate.h"
 #include "core/study/forecast.h"
 #include "core/study/run.h"
@@ -45,6 +46,8 @@ struct Services {
   /// Writes a part made by code and names the file: plate, ribbed_tray, curved_shell, t_junction
   /// or twisted_tube.
   std::function<Result<std::filesystem::path>(const std::string& name)> sample_part;
+  /// Wall thickness on a surface, before there is a mesh, see core/natural/thickness_map.h.
+  std::function<Result<ThicknessMap>(const ReferenceSurface<3>&, const Progress&)> thickness_map;
   /// A volume mesh to look at; fields the file has not are left empty.
   std::function<Result<MeshState>(const std::filesystem::path&)> read_mesh;
 };

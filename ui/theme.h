@@ -22,6 +22,9 @@ inline QColor good{0x2f, 0x85, 0x5a};
 inline QColor warning{0xc0, 0x7a, 0x0b};
 inline QColor danger{0xc5, 0x3a, 0x30};
 inline QColor surroundings{0xd9, 0xdd, 0xe2};  ///< of what is around the bodies
+inline QColor steel{0x93, 0x9e, 0xab};         ///< of a mold
+inline QColor brass{0xc9, 0xa2, 0x4b};         ///< of an insert
+inline QColor coolant{0x3b, 0xa9, 0x9c};       ///< of a channel
 inline QColor missing{0xc4, 0xc9, 0xcf};       ///< where a field has no value
 }  // namespace theme
 

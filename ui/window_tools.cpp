@@ -8,10 +8,12 @@
 #include "ui/actions/actions.h"
 #include "ui/main_window.h"
 #include "ui/panels/banner.h"
+#include "ui/panels/journal_view.h"
 #include "ui/panels/palette.h"
 #include "ui/panels/preferences.h"
 #include "ui/panels/shortcut_sheet.h"
 #include "ui/session/command_line.h"
+#include "ui/session/journal.h"
 #include "ui/session/recent_files.h"
 #include "ui/session/recovery.h"
 #include "ui/session/session.h"
@@ -24,10 +26,15 @@ WindowTools::WindowTools(MainWindow& window) : QObject(&window), window_(window)
   Actions& act = window.actions();
   recent_ = new QMenu(tr("Open &recent"), &window);
   palette_ = new Palette(&window);
-  recovery_ =
-      new Recovery(window.session(),
-                   QStandardPaths::writableLocation(QStandardPaths::AppDataLocation).toStdString() +
-                       "/recovery");
+  const std::filesystem::path kept =
+      QStandardPaths::writableLocation(QStandardPaths::AppDataLocation).toStdString() + "/recovery";
+  recovery_ = new Recovery(window.session(), kept);
+  journal_ = new Journal(window.session(), kept);
+  for (int a = 0; a < int(Act::count); ++a)
+    connect(act[Act(a)], &QAction::triggered, journal_, [this, action = act[Act(a)]] {
+      journal_->add(tr("Action: %1").arg(action->text().remove('&')));
+    });
+  connect(act[Act::journal], &QAction::triggered, this, &WindowTools::show_journal);
   connect(recent_, &QMenu::aboutToShow, this, &WindowTools::fill_recent);
   connect(&window.session(), &Session::saved, this,
           [](const QString& file) { remember_file(file); });
@@ -71,6 +78,12 @@ void WindowTools::copy_command() {
   window_.banner().show_message(Banner::Kind::done, tr("Copied"), text);
 }
 
+void WindowTools::show_journal() {
+  auto* view = new JournalView(journal_->left_behind(), journal_->text(), &window_);
+  view->setAttribute(Qt::WA_DeleteOnClose);
+  view->show();
+}
+
 void WindowTools::fill_recent() {
   recent_->clear();
   for (const QString& file : recent_files())
@@ -97,10 +110,13 @@ void WindowTools::offer_recovery() {
             if (opened != QString::fromStdString(last.file.string())) return;
             recovery_->keep();
             Recovery::discard(last);
+            journal_->discard_left();
           });
         }},
-       {tr("Discard"), [left] {
+       {tr("What was done"), [this] { show_journal(); }},
+       {tr("Discard"), [this, left] {
           for (const Recovery::Left& one : left) Recovery::discard(one);
+          journal_->discard_left();
         }}});
 }
 

@@ -6,6 +6,7 @@ class QMenu;
 
 namespace lamella::ui {
 
+class Journal;
 class MainWindow;
 class Palette;
 class Recovery;
@@ -20,17 +21,20 @@ class WindowTools : public QObject {
 
   /// Fills itself whenever it is opened.
   QMenu* recent_menu() { return recent_; }
+  const Journal& journal() const { return *journal_; }
   /// Offers what programs that are gone have left unsaved.
   void offer_recovery();
 
  private:
   void copy_command();
   void fill_recent();
+  void show_journal();
 
   MainWindow& window_;
   QMenu* recent_;
   Palette* palette_;
   Recovery* recovery_;
+  Journal* journal_;
 };
 
 }  // namespace lamella::ui

@@ -78,18 +78,20 @@ class Layout {
   Result<void> add_bodies() {
     std::vector<Region<3>> regions;
     double chord_error = 0;
-    for (const Part& part : parts_) {
-      chord_error = std::max(chord_error, part.chord_error);
-      if (part.name == background_) continue;
+    for (const RankedBody& body : by_rank(study_, parts_)) {
       Member member;
-      member.part = part;
-      if (Result<void> divided = divide(member.part, member.groups); !divided) return divided;
-      assembly_.members.push_back(std::move(member));
-      regions.push_back({part.name, surface_zone<3>(part.surface)});
-    }
-    for (const StudyZone& zone : study_.zones) {
+      if (body.part) {
+        const Part& part = *body.part;
+        chord_error = std::max(chord_error, part.chord_error);
+        if (part.name == background_) continue;
+        member.part = part;
+        if (Result<void> divided = divide(member.part, member.groups); !divided) return divided;
+        assembly_.members.push_back(std::move(member));
+        regions.push_back({part.name, surface_zone<3>(part.surface)});
+        continue;
+      }
+      const StudyZone& zone = *body.zone;
       if (zone.name == background_) continue;
-      Member member;
       member.part.name = zone.name;
       member.part.chord_error = tessellation_share * assembly_.chord_tolerance;
       Result<ReferenceSurface<3>> surface =

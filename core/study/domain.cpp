@@ -86,15 +86,29 @@ Result<StudyZone> domain_hull(const Study& study, const std::vector<Part>& parts
   return hull;
 }
 
+std::vector<RankedBody> by_rank(const Study& study, const std::vector<Part>& parts) {
+  std::vector<RankedBody> bodies;
+  for (const Part& part : parts) bodies.push_back({&part, nullptr});
+  for (const StudyZone& zone : study.zones) bodies.push_back({nullptr, &zone});
+  const auto rank = [&](const RankedBody& body) {
+    return role_rank(settings_of(study, body.part ? body.part->name : body.zone->name).role);
+  };
+  std::stable_sort(bodies.begin(), bodies.end(),
+                   [&](const RankedBody& a, const RankedBody& b) { return rank(a) < rank(b); });
+  return bodies;
+}
+
 Result<StudyOverlaps> study_overlaps(const Study& study, const std::vector<Part>& parts,
                                      OverlapOptions options, const Progress& progress) {
   const auto* outside = study.domain ? std::get_if<DomainBody>(&study.domain->shape) : nullptr;
   const auto is_domain = [&](const std::string& name) { return outside && outside->name == name; };
   std::vector<Region<3>> regions;
-  for (const Part& part : parts)
-    if (!is_domain(part.name)) regions.push_back({part.name, surface_zone<3>(part.surface)});
-  for (const StudyZone& zone : study.zones)
-    if (!is_domain(zone.name)) regions.push_back({zone.name, make_zone(zone, study.zones)});
+  for (const RankedBody& body : by_rank(study, parts)) {
+    if (body.part && !is_domain(body.part->name))
+      regions.push_back({body.part->name, surface_zone<3>(body.part->surface)});
+    if (body.zone && !is_domain(body.zone->name))
+      regions.push_back({body.zone->name, make_zone(*body.zone, study.zones)});
+  }
   if (study.domain) {
     const Result<StudyZone> hull = domain_hull(study, parts);
     if (!hull) return hull.error();

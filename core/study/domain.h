@@ -26,6 +26,15 @@ void arrange_bodies(Study& study, const std::vector<Part>& parts);
 /// margin in which they are meshed. Errors: usage (no domain, no body of that name, no box).
 Result<StudyZone> domain_hull(const Study& study, const std::vector<Part>& parts);
 
+/// A part or a zone; the other one is null.
+struct RankedBody {
+  const Part* part = nullptr;
+  const StudyZone* zone = nullptr;
+};
+/// All bodies but the background, those first that keep what they share with others: by the rank of
+/// their roles, among equals parts before zones, each in the order given.
+std::vector<RankedBody> by_rank(const Study& study, const std::vector<Part>& parts);
+
 struct StudyOverlaps {
   std::vector<std::string> names;  ///< [region of the report]
   OverlapReport report;

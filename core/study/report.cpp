@@ -215,6 +215,7 @@ std::string provenance_json(const Study& study, const SimplexMesh<3>& mesh,
   for (std::size_t b = 0; b < mesh.bodies.size(); ++b) {
     Json body = {{"name", mesh.bodies[b]}};
     const BodySettings settings = settings_of(study, mesh.bodies[b]);
+    if (settings.role != BodyRole::none) body["role"] = role_name(settings.role);
     body["layers"] = settings.layers;
     body["alpha"] = settings.alpha;
     if (settings.layers2) body["layers2"] = *settings.layers2;

@@ -4,6 +4,30 @@
 
 namespace lamella {
 
+std::string_view role_name(BodyRole role) {
+  switch (role) {
+    case BodyRole::none:
+      break;
+    case BodyRole::cavity:
+      return "cavity";
+    case BodyRole::channel:
+      return "channel";
+    case BodyRole::insert:
+      return "insert";
+    case BodyRole::mold:
+      return "mold";
+  }
+  return "none";
+}
+
+int role_layers(BodyRole role) {
+  return role == BodyRole::insert || role == BodyRole::mold ? 2 : BodySettings{}.layers;
+}
+
+int role_rank(BodyRole role) {
+  return role == BodyRole::insert ? 0 : role == BodyRole::mold ? 2 : 1;
+}
+
 BodySettings settings_of(const Study& study, const std::string& name) {
   const auto it = std::find_if(study.bodies.begin(), study.bodies.end(),
                                [&](const BodySettings& body) { return body.name == name; });

@@ -16,6 +16,22 @@
 
 namespace lamella {
 
+/// What a body is in the tool.
+enum class BodyRole {
+  none,     ///< not said
+  cavity,   ///< what the polymer fills: the molded part
+  channel,  ///< runner or cooling channel
+  insert,   ///< is molded in
+  mold      ///< holds all of them
+};
+/// "none", "cavity", "channel", "insert", "mold".
+std::string_view role_name(BodyRole role);
+/// n of a body that is given the role: metal is meshed coarser than what flows.
+int role_layers(BodyRole role);
+/// Of bodies that overlap the one with the lower rank keeps what they share: the cavity is what the
+/// mold leaves free, and an insert takes its place in the cavity.
+int role_rank(BodyRole role);
+
 /// What the user asked for one body. Lengths in mm.
 struct BodySettings {
   std::string name;
@@ -32,6 +48,7 @@ struct BodySettings {
   /// unset: a quarter of its thinnest layer.
   std::optional<double> interface_size{};
   bool flow = true;  ///< the study's flow may correct the mesh of this body
+  BodyRole role = BodyRole::none;
 
   bool operator==(const BodySettings&) const = default;
 };

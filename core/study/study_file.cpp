@@ -19,6 +19,16 @@ const std::vector<std::string> kShapes = {"body", "sphere", "box", "cylinder", "
 const std::vector<std::string> kFrames = {"cartesian", "cylindrical", "spherical"};
 const std::vector<std::string> kProgressions = {"linear", "geometric"};
 
+/// The value of the member by its name, `unset` where there is none.
+template <class Value>
+Value one_of(Members& m, const std::string& member, std::initializer_list<Value> values,
+             Value unset, std::string_view (*name)(Value)) {
+  if (!m.has(member)) return unset;
+  std::vector<std::string> names;
+  for (const Value v : values) names.emplace_back(name(v));
+  return *(values.begin() + m.choice(member, names));
+}
+
 BodySettings read_body(const Json& json, std::size_t index, std::string& complaint) {
   BodySettings body;
   Members m(json, "bodies[" + std::to_string(index) + "]", complaint);
@@ -34,6 +44,10 @@ BodySettings read_body(const Json& json, std::size_t index, std::string& complai
   m.number("interface_size", body.interface_size);
   m.flag("flow", body.flow);
   m.flag("visible", body.visible);
+  body.role = one_of(
+      m, "role",
+      {BodyRole::none, BodyRole::cavity, BodyRole::channel, BodyRole::insert, BodyRole::mold},
+      BodyRole::none, role_name);
   if (m.has("color")) {
     Vec<3> color = Vec<3>::Zero();
     m.vector("color", color);
@@ -43,16 +57,6 @@ BodySettings read_body(const Json& json, std::size_t index, std::string& complai
   }
   m.finish();
   return body;
-}
-
-/// The value of the member by its name, `unset` where there is none.
-template <class Value>
-Value one_of(Members& m, const std::string& member, std::initializer_list<Value> values,
-             Value unset, std::string_view (*name)(Value)) {
-  if (!m.has(member)) return unset;
-  std::vector<std::string> names;
-  for (const Value v : values) names.emplace_back(name(v));
-  return *(values.begin() + m.choice(member, names));
 }
 
 StudyOptions read_options(const Json& json, std::string& complaint) {
@@ -414,6 +418,7 @@ std::string study_to_json(const Study& study) {
     if (body.interface_size) b["interface_size"] = *body.interface_size;
     if (!body.flow) b["flow"] = false;
     b["visible"] = body.visible;
+    if (body.role != BodyRole::none) b["role"] = role_name(body.role);
     if (body.color) b["color"] = *body.color;
     json["bodies"].push_back(std::move(b));
   }

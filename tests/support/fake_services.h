@@ -107,6 +107,9 @@ struct FakeServices {
     services.sample_part = [](const std::string& name) -> Result<std::filesystem::path> {
       return Error{Code::usage, "No sample part is called " + name + ".", ""};
     };
+    services.thickness_map = [](const ReferenceSurface<3>& surface, const Progress& progress) {
+      return thickness_map(surface, 0, progress);
+    };
     services.read_mesh = [this](const std::filesystem::path&) -> Result<MeshState> {
       if (mesh_is_damaged) return Error{Code::bad_input, "The mesh is damaged.", ""};
       MeshState state;

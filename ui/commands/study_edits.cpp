@@ -9,7 +9,9 @@
 namespace lamella::ui {
 namespace {
 
-QString tr(const char* text) { return QCoreApplication::translate("Edits", text); }
+struct Texts {
+  Q_DECLARE_TR_FUNCTIONS(lamella::ui::Edits)
+};
 
 template <class List>
 std::string free_name(const List& list, const std::string& base) {
@@ -37,17 +39,33 @@ void change_entry(Session& session, List Study::*list, int index, const QString&
 QString kind_title(GroupKind kind) {
   switch (kind) {
     case GroupKind::gate:
-      return tr("Gate");
+      return Texts::tr("Gate");
     case GroupKind::vent:
-      return tr("Vent");
+      return Texts::tr("Vent");
     case GroupKind::symmetry:
-      return tr("Symmetry");
+      return Texts::tr("Symmetry");
     case GroupKind::walls:
-      return tr("Walls");
+      return Texts::tr("Walls");
     case GroupKind::other:
       break;
   }
-  return tr("Other");
+  return Texts::tr("Other");
+}
+
+QString role_title(BodyRole role) {
+  switch (role) {
+    case BodyRole::none:
+      break;
+    case BodyRole::cavity:
+      return Texts::tr("cavity");
+    case BodyRole::channel:
+      return Texts::tr("channel");
+    case BodyRole::insert:
+      return Texts::tr("insert");
+    case BodyRole::mold:
+      return Texts::tr("mold");
+  }
+  return Texts::tr("not said");
 }
 
 void add_group(Session& session, GroupKind kind, const std::string& body,
@@ -63,7 +81,7 @@ void add_group(Session& session, GroupKind kind, const std::string& body,
       std::erase_if(other.faces, [&](std::int32_t f) {
         return std::find(group.faces.begin(), group.faces.end(), f) != group.faces.end();
       });
-  const QString what = tr("Add group %1").arg(QString::fromStdString(group.name));
+  const QString what = Texts::tr("Add group %1").arg(QString::fromStdString(group.name));
   study.groups.push_back(std::move(group));
   const int index = static_cast<int>(study.groups.size()) - 1;
   session.edit(what, std::move(study));
@@ -80,7 +98,7 @@ void add_sizing(Session& session, const std::string& body, const QString& name,
   SizeCorrection half;
   half.factor = 0.5;
   object.asks = half;
-  const QString what = tr("Add size %1").arg(QString::fromStdString(object.name));
+  const QString what = Texts::tr("Add size %1").arg(QString::fromStdString(object.name));
   study.sizing.push_back(std::move(object));
   const int index = static_cast<int>(study.sizing.size()) - 1;
   session.edit(what, std::move(study));
@@ -90,10 +108,10 @@ void add_sizing(Session& session, const std::string& body, const QString& name,
 void add_cut(Session& session, const Vec<3>& origin, const Vec<3>& normal) {
   Study study = session.study();
   CutPlane cut;
-  cut.name = free_name(study.cuts, tr("Cut").toStdString());
+  cut.name = free_name(study.cuts, Texts::tr("Cut").toStdString());
   cut.origin = origin;
   cut.normal = normal;
-  const QString what = tr("Add %1").arg(QString::fromStdString(cut.name));
+  const QString what = Texts::tr("Add %1").arg(QString::fromStdString(cut.name));
   study.cuts.push_back(std::move(cut));
   const int index = static_cast<int>(study.cuts.size()) - 1;
   session.edit(what, std::move(study));
@@ -115,6 +133,73 @@ void edit_cut(Session& session, int index, const QString& what,
   change_entry(session, &Study::cuts, index, what, change, merge);
 }
 
+void add_zone(Session& session, const QString& name, decltype(StudyZone::shape) shape) {
+  Study study = session.study();
+  StudyZone zone{free_name(study.bodies, name.toStdString()), std::move(shape)};
+  const QString what = Texts::tr("Add %1").arg(QString::fromStdString(zone.name));
+  study.zones.push_back(std::move(zone));
+  if (!study.domain) {
+    study.domain = StudyDomain{DomainMargin{}};
+    study.options.detector = Detector::geometric;
+    // What never ends has no box that a margin could be put around.
+    if (!domain_hull(study, session.parts()))
+      study.domain = StudyDomain{ZoneBox{Vec<3>::Constant(-10), Vec<3>::Constant(10)}};
+  }
+  arrange_bodies(study, session.parts());
+  const auto index = static_cast<int>(session.parts().size() + study.zones.size()) - 1;
+  session.edit(what, std::move(study));
+  session.select(index);
+}
+
+void edit_zone(Session& session, int zone, const QString& what,
+               const std::function<void(StudyZone&)>& change, int merge) {
+  const auto& zones = session.study().zones;
+  if (zone < 0 || zone >= static_cast<int>(zones.size())) return;
+  StudyZone after = zones[static_cast<std::size_t>(zone)];
+  change(after);
+  if (after == zones[static_cast<std::size_t>(zone)]) return;
+  change_entry(
+      session, &Study::zones, zone, what, [&](StudyZone& z) { z = after; }, merge);
+}
+
+bool rename_zone(Session& session, int index, const std::string& name) {
+  Study study = session.study();
+  const std::string old = study.zones[static_cast<std::size_t>(index)].name;
+  for (const BodySettings& body : study.bodies)
+    if (body.name == name) return false;
+  if (name.empty()) return false;
+  study.zones[static_cast<std::size_t>(index)].name = name;
+  const auto follow = [&](std::string& known) {
+    if (known == old) known = name;
+  };
+  for (BodySettings& body : study.bodies) follow(body.name);
+  for (SizingObject& object : study.sizing) follow(object.body);
+  for (BoundaryGroup& group : study.groups) follow(group.body);
+  for (std::string& dropped : study.dropped) follow(dropped);
+  if (study.domain)
+    if (auto* body = std::get_if<DomainBody>(&study.domain->shape)) follow(body->name);
+  session.edit(Texts::tr("Rename %1").arg(QString::fromStdString(old)), std::move(study));
+  return true;
+}
+
+std::optional<SizingShape> knobs_of(const StudyZone& zone) {
+  if (const auto* ball = std::get_if<ZoneBall>(&zone.shape))
+    return SphereShape{ball->center, ball->radius};
+  if (const auto* box = std::get_if<ZoneBox>(&zone.shape))
+    return BoxShape{0.5 * (box->low + box->high), box->high - box->low};
+  if (const auto* cylinder = std::get_if<ZoneCylinder>(&zone.shape))
+    return CylinderShape{cylinder->from, cylinder->to, cylinder->radius};
+  return {};
+}
+
+void set_shape(StudyZone& zone, const SizingShape& shape) {
+  if (const auto* s = std::get_if<SphereShape>(&shape)) zone.shape = ZoneBall{s->center, s->radius};
+  if (const auto* b = std::get_if<BoxShape>(&shape))
+    zone.shape = ZoneBox{b->center - 0.5 * b->size, b->center + 0.5 * b->size};
+  if (const auto* c = std::get_if<CylinderShape>(&shape))
+    zone.shape = ZoneCylinder{c->from, c->to, c->radius};
+}
+
 void edit_domain(Session& session, const QString& what, const std::optional<StudyDomain>& domain,
                  int merge) {
   Study study = session.study();
@@ -130,17 +215,17 @@ void show_all_bodies(Session& session) {
   Study study = session.study();
   const std::size_t around = has_background(study) ? 1 : 0;
   for (std::size_t k = 0; k + around < study.bodies.size(); ++k) study.bodies[k].visible = true;
-  session.edit(tr("Show all bodies"), std::move(study));
+  session.edit(Texts::tr("Show all bodies"), std::move(study));
 }
 
 QString domain_title(const StudyDomain& domain) {
   if (const auto* margin = std::get_if<DomainMargin>(&domain.shape))
-    return tr("Box with a margin of %1 %").arg(100 * margin->share, 0, 'g', 4);
+    return Texts::tr("Box with a margin of %1 %").arg(100 * margin->share, 0, 'g', 4);
   if (const auto* body = std::get_if<DomainBody>(&domain.shape))
-    return tr("Inside of %1").arg(QString::fromStdString(body->name));
-  if (std::holds_alternative<ZoneBox>(domain.shape)) return tr("Box");
-  if (std::holds_alternative<ZoneCylinder>(domain.shape)) return tr("Cylinder");
-  return tr("The bodies alone");
+    return Texts::tr("Inside of %1").arg(QString::fromStdString(body->name));
+  if (std::holds_alternative<ZoneBox>(domain.shape)) return Texts::tr("Box");
+  if (std::holds_alternative<ZoneCylinder>(domain.shape)) return Texts::tr("Cylinder");
+  return Texts::tr("The bodies alone");
 }
 
 void toggle_face(Session& session, int index, const std::string& body, std::int32_t face) {
@@ -158,7 +243,7 @@ void toggle_face(Session& session, int index, const std::string& body, std::int3
     group.faces.push_back(face);
     std::sort(group.faces.begin(), group.faces.end());
   }
-  const QString what = (had ? tr("Take a face out of %1") : tr("Add a face to %1"))
+  const QString what = (had ? Texts::tr("Take a face out of %1") : Texts::tr("Add a face to %1"))
                            .arg(QString::fromStdString(group.name));
   session.edit(what, std::move(study));
 }

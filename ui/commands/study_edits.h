@@ -27,6 +27,18 @@ void edit_sizing(Session& session, int index, const QString& what,
 void edit_cut(Session& session, int index, const QString& what,
               const std::function<void(CutPlane&)>& change, int merge = 0);
 
+/// A further body by formula. Only one mesh of all bodies knows such bodies: without a domain the
+/// study gets one.
+void add_zone(Session& session, const QString& name, decltype(StudyZone::shape) shape);
+void edit_zone(Session& session, int zone, const QString& what,
+               const std::function<void(StudyZone&)>& change, int merge = 0);
+/// Wherever the study names it. False, without a change, where the name is empty or taken.
+bool rename_zone(Session& session, int zone, const std::string& name);
+/// A shape with knobs in the view; nothing: it has none.
+std::optional<SizingShape> knobs_of(const StudyZone& zone);
+/// The other way round.
+void set_shape(StudyZone& zone, const SizingShape& shape);
+
 /// Another domain of one mesh of all bodies, or none: one mesh for each body. What is around the
 /// bodies comes and goes with it.
 void edit_domain(Session& session, const QString& what, const std::optional<StudyDomain>& domain,
@@ -40,6 +52,8 @@ void toggle_face(Session& session, int group, const std::string& body, std::int3
 
 /// "gate", "vent": what the user reads.
 QString kind_title(GroupKind kind);
+/// "cavity", "mold".
+QString role_title(BodyRole role);
 /// "Box with a margin of 10 %"
 QString domain_title(const StudyDomain& domain);
 

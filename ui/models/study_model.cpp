@@ -1,5 +1,6 @@
 #include "ui/models/study_model.h"
 
+#include <QApplication>
 #include <QFont>
 #include <QIcon>
 #include <QPainter>
@@ -10,6 +11,7 @@
 #include "ui/commands/study_edits.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 namespace {
@@ -19,7 +21,9 @@ constexpr int sections = 5;
 QString text(const std::string& s) { return QString::fromStdString(s); }
 
 QIcon swatch(const QColor& color, bool round) {
-  QPixmap pixmap(14, 14);
+  const double ratio = qApp->devicePixelRatio();
+  QPixmap pixmap(QSize(14, 14) * ratio);
+  pixmap.setDevicePixelRatio(ratio);
   pixmap.fill(Qt::transparent);
   QPainter painter(&pixmap);
   painter.setRenderHint(QPainter::Antialiasing);
@@ -172,7 +176,9 @@ QVariant StudyModel::section_data(ItemKind kind, int column, int role) const {
 QVariant StudyModel::body_data(int row, int column, int role) const {
   const BodySettings& body = session_.body(row);
   if (column == name) {
-    if (role == Qt::DisplayRole) return text(body.name);
+    if (role == Qt::DisplayRole)
+      return body.role == BodyRole::none ? text(body.name)
+                                         : text(body.name) + " · " + role_title(body.role);
     if (role == Qt::CheckStateRole) return body.visible ? Qt::Checked : Qt::Unchecked;
     if (role == Qt::DecorationRole) return swatch(session_.color_of(row), false);
     if (role == Qt::FontRole && !session_.is_part(row)) {
@@ -236,11 +242,11 @@ QVariant StudyModel::sizing_data(int row, int column, int role) const {
                                  : tr("%1\nfor %2").arg(text(object.name), text(object.body));
   } else if (column == value && role == Qt::DisplayRole) {
     if (const auto* zone = std::get_if<AnalyticZone>(&object.asks))
-      return tr("%1 mm").arg(zone->sizes.minCoeff(), 0, 'g', 3);
+      return units::length(zone->sizes.minCoeff(), 3);
     if (const auto* layer = std::get_if<BoundaryLayer>(&object.asks))
-      return tr("%1 × %2 mm").arg(layer->layers).arg(layer->thickness, 0, 'g', 3);
+      return QString("%1 × %2").arg(layer->layers).arg(units::length(layer->thickness, 3));
     const auto& asked = std::get<SizeCorrection>(object.asks);
-    return asked.size ? tr("%1 mm").arg(*asked.size, 0, 'g', 3)
+    return asked.size ? units::length(*asked.size, 3)
                       : tr("× %1").arg(asked.factor.value_or(1), 0, 'g', 3);
   }
   return {};

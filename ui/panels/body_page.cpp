@@ -1,14 +1,18 @@
 #include "ui/panels/body_page.h"
 
 #include <QColorDialog>
+#include <QComboBox>
 #include <QPushButton>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <limits>
 
+#include "ui/commands/study_edits.h"
 #include "ui/panels/form.h"
+#include "ui/panels/zone_form.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 namespace {
@@ -16,7 +20,7 @@ namespace {
 /// Width over which n2 reaches when it is asked for first.
 constexpr double first_alpha2 = 4;
 
-QString short_length(double mm) { return QString::number(mm, 'g', 3); }
+QString short_length(double mm) { return units::number(mm, 3); }
 
 QString size_text(const Part& part) {
   if (part.surface.points.empty()) return {};
@@ -28,11 +32,8 @@ QString size_text(const Part& part) {
     high = high.cwiseMax(p);
   }
   const Vec<3> size = high - low;
-  return BodyPage::tr("%1 × %2 × %3 mm<br>Volume %L4 mm³<br>%L5 faces, %L6 triangles")
-      .arg(size[0], 0, 'g', 4)
-      .arg(size[1], 0, 'g', 4)
-      .arg(size[2], 0, 'g', 4)
-      .arg(part.cad_volume, 0, 'f', 1)
+  return BodyPage::tr("%1<br>Volume %2<br>%L3 faces, %L4 triangles")
+      .arg(units::size(size), units::volume(part.cad_volume))
       .arg(part.surface.faces.size())
       .arg(part.surface.facets.size());
 }
@@ -50,6 +51,21 @@ BodyPage::BodyPage(Session& session, QWidget* parent) : QWidget(parent), session
   details_->setWordWrap(true);
   details_->setTextFormat(Qt::RichText);
   layout->addWidget(details_);
+
+  zone_ = new ZoneForm(session);
+  layout->addWidget(zone_);
+  auto* is = new Form;
+  role_ = new QComboBox;
+  role_->setObjectName("role");
+  role_->setToolTip(
+      tr("What the body is in the tool. It gives the body its color and its layers,\n"
+         "and tells who keeps what bodies share in one mesh of all: inserts before\n"
+         "cavities and channels, and these before the mold"));
+  for (const BodyRole role :
+       {BodyRole::none, BodyRole::cavity, BodyRole::channel, BodyRole::insert, BodyRole::mold})
+    role_->addItem(role_title(role), int(role));
+  is->add(tr("Role"), role_);
+  layout->addLayout(is);
 
   layout->addWidget(styled_label(tr("Walls"), "section_title"));
   auto* form = new Form;
@@ -98,6 +114,15 @@ BodyPage::BodyPage(Session& session, QWidget* parent) : QWidget(parent), session
 }
 
 void BodyPage::connect_boxes() {
+  connect(role_, &QComboBox::activated, this, [this] {
+    if (role_->currentIndex() < 0) return;
+    const auto role = BodyRole(role_->currentData().toInt());
+    session_.edit_selection(tr("Role"), [role](BodySettings& b) {
+      // Layers that were chosen by hand stay.
+      if (b.layers == role_layers(b.role)) b.layers = role_layers(role);
+      b.role = role;
+    });
+  });
   connect(layers_, &QSpinBox::valueChanged, this, [this](int n) {
     if (n > 0) session_.edit_selection(tr("Layers"), [n](BodySettings& b) { b.layers = n; });
   });
@@ -166,7 +191,7 @@ void BodyPage::show_details() {
     double volume = 0;
     for (const int k : chosen) volume += session_.shapes()[static_cast<std::size_t>(k)].cad_volume;
     title_->setText(tr("%1 bodies").arg(chosen.size()));
-    details_->setText(tr("Volume %L1 mm³").arg(volume, 0, 'f', 1));
+    details_->setText(tr("Volume %1").arg(units::volume(volume)));
     return;
   }
   const Part& part = session_.shapes()[static_cast<std::size_t>(chosen.front())];
@@ -188,8 +213,8 @@ void BodyPage::show_automatic() {
   }
   h_min_->set_automatic(
       short_length(low) == short_length(high)
-          ? tr("automatic: %1 mm").arg(short_length(low))
-          : tr("automatic: %1 to %2 mm").arg(short_length(low), short_length(high)),
+          ? tr("automatic: %1").arg(units::length(low, 3))
+          : tr("automatic: %1 to %2").arg(short_length(low), units::length(high, 3)),
       low);
   h_max_->set_automatic(tr("no bound"), 200 * low);
   // A run has found out what automatic means.
@@ -201,7 +226,7 @@ void BodyPage::show_automatic() {
       if (made.name == session_.body(session_.selection().front()).name &&
           made.interface_size > 0 && !session_.body(session_.selection().front()).interface_size) {
         start = made.interface_size;
-        automatic = tr("automatic: %1 mm").arg(short_length(start));
+        automatic = tr("automatic: %1").arg(units::length(start, 3));
       }
   interface_->set_automatic(automatic, start);
 }
@@ -210,6 +235,9 @@ void BodyPage::refresh() {
   show_details();
   const auto& chosen = session_.selection();
   setEnabled(!chosen.empty());
+  const int first_zone = static_cast<int>(session_.parts().size());
+  zone_->show_zone(
+      chosen.size() == 1 && session_.is_zone(chosen.front()) ? chosen.front() - first_zone : -1);
   if (chosen.empty()) return;
   const QSignalBlocker block[] = {QSignalBlocker(layers_),  QSignalBlocker(alpha_),
                                   QSignalBlocker(h_min_),   QSignalBlocker(h_max_),
@@ -228,6 +256,8 @@ void BodyPage::refresh() {
     box->setSpecialValueText(mixed ? tr("different") : at_least);
     box->setValue(mixed ? least - 1 : value);
   };
+  const bool mixed_role = differs([](const BodySettings& b) { return b.role; });
+  role_->setCurrentIndex(mixed_role ? -1 : role_->findData(int(first.role)));
   show(layers_, first.layers, 1, QString(), [](const BodySettings& b) { return b.layers; });
   const bool mixed_alpha = differs([](const BodySettings& b) { return b.alpha; });
   alpha_->setMinimum(mixed_alpha ? 0 : 0.1);

@@ -6,6 +6,7 @@
 #include "core/study/study.h"
 
 class QCheckBox;
+class QComboBox;
 class QDoubleSpinBox;
 class QFormLayout;
 class QLabel;
@@ -17,6 +18,7 @@ namespace lamella::ui {
 class Folded;
 class LengthBox;
 class Session;
+class ZoneForm;
 
 /// Properties of the selected bodies: what is known of them, and the layers through their walls.
 class BodyPage : public QWidget {
@@ -34,6 +36,8 @@ class BodyPage : public QWidget {
   Session& session_;
   QLabel* title_;
   QLabel* details_;
+  ZoneForm* zone_;
+  QComboBox* role_;
   QSpinBox* layers_;
   QDoubleSpinBox* alpha_;
   LengthBox* h_min_;

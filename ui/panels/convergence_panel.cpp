@@ -1,7 +1,6 @@
 #include "ui/panels/convergence_panel.h"
 
 #include <QCheckBox>
-#include <QFileDialog>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QSlider>
@@ -10,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/atomic_file.h"
+#include "ui/panels/save_figures.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 
@@ -28,7 +27,9 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(6, 6, 6, 8);
   layout->setSpacing(2);
-  auto* plots = new QHBoxLayout;
+  plots_ = new QWidget;
+  auto* plots = new QHBoxLayout(plots_);
+  plots->setContentsMargins(0, 0, 0, 0);
   plots->setSpacing(8);
   nodes_ = new Plot(tr("Nodes"));
   nodes_->setObjectName("nodes_plot");
@@ -49,7 +50,7 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
     for (Plot* other : {nodes_, layers_, conformity_, error_})
       if (other != plot) connect(plot, &Plot::hovered, other, &Plot::set_hovered);
   }
-  layout->addLayout(plots, 1);
+  layout->addWidget(plots_, 1);
 
   auto* row = new QHBoxLayout;
   row->setContentsMargins(12, 0, 14, 0);
@@ -63,6 +64,7 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   row->addWidget(back_);
   slider_ = new QSlider(Qt::Horizontal);
   slider_->setObjectName("iteration_slider");
+  slider_->setAccessibleName(tr("Iteration"));
   slider_->setPageStep(1);
   row->addWidget(slider_, 1);
   forward_ = new QToolButton;
@@ -77,10 +79,11 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   row->addWidget(logarithmic);
   auto* table = new QToolButton;
   table->setIcon(icon("export"));
-  table->setToolTip(tr("Save the figures of all iterations as comma-separated values"));
+  table->setToolTip(tr("Save the figures of all iterations as a table or as a picture"));
   table->setAccessibleName(tr("Save figures"));
   row->addWidget(table);
-  connect(table, &QToolButton::clicked, this, &ConvergencePanel::save_csv);
+  connect(table, &QToolButton::clicked, this,
+          [this] { save(ask_figures_file(this, QString::fromStdString(session_.study().name))); });
   layout->addLayout(row);
 
   connect(logarithmic, &QCheckBox::toggled, nodes_, &Plot::set_logarithmic);
@@ -118,12 +121,9 @@ QString ConvergencePanel::csv() const {
   return text;
 }
 
-void ConvergencePanel::save_csv() {
-  const QString name = QString::fromStdString(session_.study().name) + ".csv";
-  const QString file = QFileDialog::getSaveFileName(this, tr("Save figures"), name,
-                                                    tr("Comma-separated values (*.csv)"));
+void ConvergencePanel::save(const QString& file) {
   if (file.isEmpty()) return;
-  const Result<void> written = write_file(file.toStdString(), csv().toStdString());
+  const Result<void> written = save_figures(file, csv(), *plots_);
   Q_EMIT session_.logged(written ? tr("Wrote %1").arg(file)
                                  : QString::fromStdString(written.error().message));
 }

@@ -21,15 +21,17 @@ class ConvergencePanel : public QWidget {
   explicit ConvergencePanel(Session& session, QWidget* parent = nullptr);
   /// Every iteration as a line of comma-separated values, with titles.
   QString csv() const;
+  /// Writes the figures, or a picture of the plots, by the ending of the file.
+  void save(const QString& file);
 
  private:
-  void save_csv();
   void follow_iterations();
   void follow_shown();
   /// The layers of the selected body where they are known apart, else of all.
   void show_layers(Series mean, Series low);
 
   Session& session_;
+  QWidget* plots_;
   Plot* nodes_;
   Plot* layers_;
   Plot* conformity_;

@@ -17,9 +17,9 @@ CutPage::CutPage(Session& session, QWidget* parent) : QWidget(parent), session_(
   auto* form = new Form;
   name_ = new QLineEdit;
   form->add(tr("Name"), name_);
-  origin_ = new PointBox("cut_origin", tr("A point of the plane, mm"));
+  origin_ = new PointBox("cut_origin", tr("A point of the plane"));
   form->add(tr("Through"), origin_);
-  normal_ = new PointBox("cut_normal", tr("Across the plane: what it points to is cut away"));
+  normal_ = new PointBox("cut_normal", tr("Across the plane: what it points to is cut away"), true);
   form->add(tr("Towards"), normal_);
   layout->addLayout(form);
   auto* hint = styled_label(

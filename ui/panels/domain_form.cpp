@@ -84,13 +84,13 @@ DomainForm::DomainForm(Session& session, QWidget* parent)
   rows_->add(tr("Margin"), share_);
   body_ = choice("domain_body", tr("The body that the others are in"));
   rows_->add(tr("Inside of"), body_);
-  low_ = new PointBox("domain_low", tr("Lower corner, mm"));
+  low_ = new PointBox("domain_low", tr("Lower corner"));
   rows_->add(tr("From corner"), low_);
-  high_ = new PointBox("domain_high", tr("Upper corner, mm"));
+  high_ = new PointBox("domain_high", tr("Upper corner"));
   rows_->add(tr("To corner"), high_);
-  from_ = new PointBox("domain_from", tr("Middle of one end, mm"));
+  from_ = new PointBox("domain_from", tr("Middle of one end"));
   rows_->add(tr("From"), from_);
-  to_ = new PointBox("domain_to", tr("Middle of the other end, mm"));
+  to_ = new PointBox("domain_to", tr("Middle of the other end"));
   rows_->add(tr("To"), to_);
   radius_ = length_box("domain_radius", tr("Radius of the cylinder"));
   radius_->setMinimum(1e-6);

@@ -7,6 +7,7 @@
 #include "ui/commands/study_edits.h"
 #include "ui/panels/form.h"
 #include "ui/session/session.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 
@@ -32,10 +33,7 @@ void DomainPage::refresh() {
   } else if (!std::holds_alternative<DomainBodies>(study.domain->shape)) {
     const Box<3> box = make_zone(*hull, {*hull})->box();
     const Vec<3> size = box.hi - box.lo;
-    lines << tr("%1 × %2 × %3 mm")
-                 .arg(size[0], 0, 'g', 4)
-                 .arg(size[1], 0, 'g', 4)
-                 .arg(size[2], 0, 'g', 4);
+    lines << units::size(size);
   }
   lines << tr(
       "One mesh fills it and carries all bodies. Where bodies overlap, the one that comes "

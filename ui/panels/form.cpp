@@ -6,15 +6,6 @@
 #include "ui/theme.h"
 
 namespace lamella::ui {
-namespace {
-
-/// Without zeros at its end: the three boxes share the width of one.
-class CoordinateBox : public QDoubleSpinBox {
- public:
-  QString textFromValue(double value) const override { return locale().toString(value, 'g', 6); }
-};
-
-}  // namespace
 
 QLabel* styled_label(const QString& text, const char* kind) {
   auto* l = new QLabel(text);
@@ -55,7 +46,7 @@ QString pictured_tip(const char* name, const QString& text) {
 }
 
 Form::Form() {
-  setHorizontalSpacing(12);
+  setHorizontalSpacing(8);
   setVerticalSpacing(7);
   setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
 }
@@ -96,7 +87,8 @@ Folded::Folded(const QString& title, QWidget* parent) : QWidget(parent) {
   });
 }
 
-PointBox::PointBox(const char* name, const QString& tip, QWidget* parent) : QWidget(parent) {
+PointBox::PointBox(const char* name, const QString& tip, bool direction, QWidget* parent)
+    : QWidget(parent) {
   setObjectName(name);
   setToolTip(tip);
   auto* row = new QHBoxLayout(this);
@@ -104,13 +96,10 @@ PointBox::PointBox(const char* name, const QString& tip, QWidget* parent) : QWid
   row->setSpacing(4);
   const char* const axes[] = {"x", "y", "z"};
   for (std::size_t k = 0; k < 3; ++k) {
-    auto* box = new CoordinateBox;
+    auto* box = new CoordinateBox(direction);
     box->setObjectName("coordinate");
-    box->setRange(-1e6, 1e6);
     box->setSingleStep(0.5);
-    box->setKeyboardTracking(false);
     box->setToolTip(tip);
-    box->setDecimals(4);
     box->setButtonSymbols(QAbstractSpinBox::NoButtons);
     box->setAccessibleName(axes[k]);
     box->setMinimumWidth(30);

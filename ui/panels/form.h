@@ -45,12 +45,12 @@ class Folded : public QWidget {
   Form* form_;
 };
 
-/// Three coordinates, mm, or three parts of a direction.
+/// Three coordinates, mm, or with `direction` three parts of one.
 class PointBox : public QWidget {
   Q_OBJECT
 
  public:
-  explicit PointBox(const char* name, const QString& tip, QWidget* parent = nullptr);
+  PointBox(const char* name, const QString& tip, bool direction = false, QWidget* parent = nullptr);
   Vec<3> point() const;
   /// Does not tell `edited`.
   void set_point(const Vec<3>& point);

@@ -15,6 +15,7 @@
 #include "ui/commands/study_edits.h"
 #include "ui/panels/form.h"
 #include "ui/session/session.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 namespace {
@@ -81,6 +82,7 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   flood->addWidget(wide_button(actions[Act::pick_flood]), 1);
   angle_ = number_box(1, 180, 5, "flood_angle",
                       tr("A flood crosses edges where the surface turns by no more than this"));
+  angle_->setAccessibleName(angle_->toolTip());
   angle_->setDecimals(0);
   angle_->setSuffix("°");
   angle_->setValue(20);
@@ -88,6 +90,7 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   layout->addLayout(flood);
   faces_ = new QListWidget;
   faces_->setObjectName("group_faces");
+  faces_->setAccessibleName(tr("Faces"));
   faces_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   faces_->setFrameShape(QFrame::NoFrame);
   faces_->setToolTip(tr("Del takes the selected ones out"));
@@ -211,7 +214,7 @@ void GroupPage::refresh() {
     return;
   }
   const auto facets = facets_of(*g, part->surface);
-  area_->setText(facets ? tr("%L1 mm²").arg(area_of(part->surface, *facets), 0, 'f', 2)
+  area_->setText(facets ? units::area(area_of(part->surface, *facets))
                         : QString::fromStdString(facets.error().message));
 }
 

@@ -6,6 +6,7 @@ namespace lamella::ui {
 
 LogPanel::LogPanel(QWidget* parent) : QPlainTextEdit(parent) {
   setReadOnly(true);
+  setAccessibleName(tr("Log"));
   setFrameShape(QFrame::NoFrame);
   setMaximumBlockCount(20000);
   document()->setDocumentMargin(12);

@@ -9,6 +9,7 @@
 #include "ui/panels/domain_form.h"
 #include "ui/panels/form.h"
 #include "ui/session/session.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 
@@ -124,12 +125,12 @@ void MeshPage::refresh() {
     low = std::min(low, session_.automatic_size(k));
     high = std::max(high, session_.automatic_size(k));
   }
-  const QString least = QString::number(low, 'g', 3);
-  const QString most = QString::number(high, 'g', 3);
+  const QString least = units::length(low, 3);
+  const QString most = units::length(high, 3);
   if (high > 0)
-    chord_->set_automatic(least == most ? tr("automatic: %1 mm").arg(least)
-                                        : tr("automatic: %1 to %2 mm").arg(least, most),
-                          low);
+    chord_->set_automatic(
+        least == most ? tr("automatic: %1").arg(least) : tr("automatic: %1 to %2").arg(least, most),
+        low);
   const StudyOptions& o = session_.study().options;
   chord_->set_length(o.chord_tolerance);
   iterations_->setValue(o.iterations);

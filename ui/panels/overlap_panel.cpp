@@ -10,6 +10,7 @@
 #include "ui/panels/form.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 namespace {
@@ -19,7 +20,14 @@ QString cell(const QString& text, bool number = true) {
       .arg(number ? "right" : "left", text);
 }
 
-QString number(double value) { return QString("%L1").arg(value, 0, 'g', 3); }
+QString length(double mm) { return units::length(mm, 3); }
+
+/// A volume of about three digits, with its error.
+QString volume(double mm3, double error) {
+  const double unit = std::pow(units::per_unit(), 3);
+  return QString("%L1 ± %L2 ").arg(mm3 / unit, 0, 'g', 3).arg(error / unit, 0, 'g', 3) +
+         units::name() + "³";
+}
 
 QString link(const char* what, const char* kind, std::size_t index, const QString& text) {
   return QString("<a style='color:%1' href='%2:%3:%4'>%5</a>")
@@ -61,15 +69,18 @@ OverlapPanel::OverlapPanel(Session& session, QWidget* parent) : QWidget(parent),
                                       "Empty: overlaps only"));
   width_->set_automatic(tr("overlaps only"), 0.1);
   width_->setFixedWidth(130);
+  width_->setAccessibleName(tr("for overlaps, and for gaps narrower than"));
   bar->addWidget(width_);
   bar->addStretch(1);
   layout->addLayout(bar);
   text_ = new QTextBrowser;
   text_->setObjectName("overlaps");
+  text_->setAccessibleName(tr("Overlaps and gaps"));
   text_->setFrameShape(QFrame::NoFrame);
   text_->document()->setDocumentMargin(14);
   text_->setOpenLinks(false);
   layout->addWidget(text_, 1);
+  connect(&Units::get(), &Units::changed, this, &OverlapPanel::refresh);
   connect(button_, &QPushButton::clicked, this, &OverlapPanel::look);
   connect(text_, &QTextBrowser::anchorClicked, this, &OverlapPanel::jump);
   for (const auto signal : {&Session::overlaps_changed, &Session::activity_changed,
@@ -110,31 +121,31 @@ QString OverlapPanel::found_html() const {
     html += title(tr("No bodies overlap."));
   } else {
     html += title(overlaps.size() == 1 ? tr("1 overlap") : tr("%1 overlaps").arg(overlaps.size()));
-    html += row({{}, tr("Bodies"), tr("Volume, mm³"), tr("Depth, mm"), {}});
+    html += row({{}, tr("Bodies"), tr("Volume"), tr("Depth"), {}});
     for (std::size_t k = 0; k < overlaps.size(); ++k) {
       const Overlap& o = overlaps[k];
       html +=
           "<tr>" + links("overlap", k) +
           cell(tr("%1 and %2").arg(name(o.first), name(o.second)), false) +
-          cell(tr("%1 ± %2").arg(number(o.volume), number(o.error))) + cell(number(o.depth)) +
+          cell(volume(o.volume, o.error)) + cell(length(o.depth)) +
           cell(o.inner ? tr("%1 lies wholly in the other").arg(name(*o.inner)) : QString(), false) +
           "</tr>";
     }
     html += "</table>";
   }
   if (check.gap_width > 0 && gaps.empty()) {
-    html += title(tr("No gaps are narrower than %1 mm.").arg(number(check.gap_width)));
+    html += title(tr("No gaps are narrower than %1.").arg(length(check.gap_width)));
   } else if (check.gap_width > 0) {
-    const QString narrower = tr("narrower than %1 mm").arg(number(check.gap_width));
+    const QString narrower = tr("narrower than %1").arg(length(check.gap_width));
     html +=
         title((gaps.size() == 1 ? tr("1 gap") : tr("%1 gaps").arg(gaps.size())) + ' ' + narrower);
-    html += row({{}, tr("Bodies"), tr("Volume, mm³"), tr("Narrowest, mm"), tr("mean")});
+    html += row({{}, tr("Bodies"), tr("Volume"), tr("Narrowest"), tr("mean")});
     for (std::size_t k = 0; k < gaps.size(); ++k) {
       const Gap& g = gaps[k];
       html += "<tr>" + links("gap", k) +
               cell(tr("%1 and %2").arg(name(g.first), name(g.second)), false) +
-              cell(tr("%1 ± %2").arg(number(g.volume), number(g.error))) +
-              cell(number(g.least_width)) + cell(number(g.mean_width)) + "</tr>";
+              cell(volume(g.volume, g.error)) + cell(length(g.least_width)) +
+              cell(length(g.mean_width)) + "</tr>";
     }
     html += "</table>";
   }
@@ -165,10 +176,10 @@ void OverlapPanel::jump(const QUrl& to) {
   };
   if (words[1] == "overlap" && k < report.overlaps.size())
     show(report.overlaps[k], 4 * report.overlaps[k].depth,
-         tr("overlap %1 mm deep").arg(number(report.overlaps[k].depth)));
+         tr("overlap %1 deep").arg(length(report.overlaps[k].depth)));
   else if (words[1] == "gap" && k < report.gaps.size())
     show(report.gaps[k], 8 * report.gaps[k].least_width,
-         tr("gap of %1 mm").arg(number(report.gaps[k].least_width)));
+         tr("gap of %1").arg(length(report.gaps[k].least_width)));
 }
 
 }  // namespace lamella::ui

@@ -3,8 +3,11 @@
 #include <QComboBox>
 #include <QSettings>
 #include <QVBoxLayout>
+#include <algorithm>
 
+#include "ui/language.h"
 #include "ui/panels/form.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 
@@ -19,6 +22,23 @@ Preferences::Preferences(QWidget* parent) : QDialog(parent) {
   theme->addItem(tr("dark"));
   theme->setCurrentIndex(QSettings().value("dark", false).toBool() ? 1 : 0);
   form->add(tr("Theme"), theme);
+  auto* unit = new QComboBox;
+  unit->setObjectName("unit");
+  unit->setToolTip(tr("In what lengths are shown and entered; files keep millimeters"));
+  unit->addItems({tr("millimeters"), tr("inches")});
+  unit->setCurrentIndex(Units::get().inches() ? 1 : 0);
+  form->add(tr("Lengths in"), unit);
+  connect(unit, &QComboBox::currentIndexChanged, this,
+          [](int index) { Units::get().set_inches(index == 1); });
+  auto* language = new QComboBox;
+  language->setObjectName("language");
+  language->setToolTip(tr("From the next start on"));
+  for (const auto& [code, name] : languages()) language->addItem(name, code);
+  language->setCurrentIndex(
+      std::max(0, language->findData(QSettings().value("language").toString())));
+  form->add(tr("Language"), language);
+  connect(language, &QComboBox::currentIndexChanged, this,
+          [language] { QSettings().setValue("language", language->currentData().toString()); });
   auto* memory = integer_box(
       0, 10000000, "memory_budget",
       tr("Of studies begun from now on: a run that is expected to take more does not start"));

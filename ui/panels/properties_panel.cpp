@@ -23,6 +23,7 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
   outer->setContentsMargins(1, 1, 1, 1);
   auto* scroll = new QScrollArea;
   scroll_ = scroll;
+  scroll->setAccessibleName(tr("Settings"));
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);

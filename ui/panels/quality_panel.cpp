@@ -2,9 +2,11 @@
 
 #include <QMouseEvent>
 #include <QPainter>
+#include <QToolButton>
 #include <algorithm>
 #include <cmath>
 
+#include "ui/panels/save_figures.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 #include "ui/views/color_map.h"
@@ -22,6 +24,15 @@ QualityPanel::QualityPanel(Session& session, QWidget* parent) : QWidget(parent),
       tr("Draw a range to see only its elements; click to see all again.\n"
          "The bars grow with the logarithm of the count"));
   setCursor(Qt::CrossCursor);
+  table_ = new QToolButton(this);
+  table_->setIcon(icon("export"));
+  table_->setCursor(Qt::ArrowCursor);
+  table_->setAutoRaise(true);
+  table_->setToolTip(tr("Save the counts as a table, or the histogram as a picture"));
+  table_->setAccessibleName(tr("Save figures"));
+  connect(table_, &QToolButton::clicked, this, [this] {
+    save(ask_figures_file(this, QString::fromStdString(session_.study().name) + " quality"));
+  });
   connect(&session, &Session::shown_changed, this, &QualityPanel::follow);
   connect(&session, &Session::iterations_changed, this, &QualityPanel::follow);
   follow();
@@ -33,6 +44,28 @@ void QualityPanel::follow() {
     for (const double q : state->quality)
       ++counts_[static_cast<std::size_t>(std::clamp(static_cast<int>(q * bins), 0, bins - 1))];
   update();
+}
+
+QString QualityPanel::csv() const {
+  QString text = "from,to,elements\n";
+  for (int k = 0; k < bins; ++k)
+    text += QString("%1,%2,%3\n")
+                .arg(double(k) / bins)
+                .arg(double(k + 1) / bins)
+                .arg(counts_[static_cast<std::size_t>(k)]);
+  return text;
+}
+
+void QualityPanel::save(const QString& file) {
+  if (file.isEmpty()) return;
+  const Result<void> written = save_figures(file, csv(), *this);
+  Q_EMIT session_.logged(written ? tr("Wrote %1").arg(file)
+                                 : QString::fromStdString(written.error().message));
+}
+
+void QualityPanel::resizeEvent(QResizeEvent*) {
+  table_->adjustSize();
+  table_->move(width() - table_->width() - 8, 6);
 }
 
 void QualityPanel::set_range(const std::optional<std::pair<double, double>>& range) {

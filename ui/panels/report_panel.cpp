@@ -5,6 +5,7 @@
 
 #include "ui/session/session.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 namespace {
@@ -19,12 +20,14 @@ QString cell(const QString& text) {
 
 ReportPanel::ReportPanel(Session& session, QWidget* parent)
     : QTextBrowser(parent), session_(session) {
+  setAccessibleName(tr("Report"));
   setFrameShape(QFrame::NoFrame);
   document()->setDocumentMargin(14);
   setOpenLinks(false);
   // Columns keep their numbers whole; notes have a width of their own.
   setLineWrapMode(QTextEdit::NoWrap);
   connect(this, &QTextBrowser::anchorClicked, this, &ReportPanel::jump);
+  connect(&Units::get(), &Units::changed, this, &ReportPanel::refresh);
   connect(&session, &Session::run_finished, this, &ReportPanel::refresh);
   connect(&session, &Session::iterations_changed, this, &ReportPanel::refresh);
   refresh();
@@ -46,7 +49,7 @@ void ReportPanel::refresh() {
   html += "<table cellspacing='0'><tr style='color:" + theme::soft_text.name() + "'>";
   const QStringList titles{tr("Body"),         tr("Layers asked"),  tr("mean"),
                            tr("5 %"),          tr("median"),        tr("places reached"),
-                           tr("Volume, mm³"),  tr("off the CAD's"), tr("Distance to surface"),
+                           tr("Volume"),       tr("off the CAD's"), tr("Distance to surface"),
                            tr("First mesh by")};
   for (int k = 0; k < titles.size(); ++k)
     html += QString("<td align='%1' style='padding: 4px 12px 4px 0'>%2</td>")
@@ -62,14 +65,14 @@ void ReportPanel::refresh() {
     html += cell(QString::number(body.layers.p5, 'f', 2));
     html += cell(QString::number(body.layers.p50, 'f', 2));
     html += cell(tr("%1 %").arg(body.layers.share_reached * 100, 0, 'f', 1));
-    html += cell(QString("%L1").arg(body.mesh_volume, 0, 'f', 1));
+    html += cell(units::volume(body.mesh_volume));
     html += cell(tr("%1 %").arg(off, 0, 'f', 3));
     // Fuzzy borders have no faces that could be off.
     const bool fuzzy = body.interface_size > 0;
     html += cell(fuzzy ? tr("–")
-                       : tr("%1 of %2 mm")
-                             .arg(body.boundary_distance.largest(), 0, 'g', 3)
-                             .arg(body.chord_tolerance, 0, 'g', 3));
+                       : tr("%1 of %2")
+                             .arg(units::number(body.boundary_distance.largest(), 3),
+                                  units::length(body.chord_tolerance, 3)));
     html += cell(QString::fromStdString(body.first_mesh_by).toHtmlEscaped()) + "</tr>";
   }
   html += "</table>";
@@ -96,7 +99,7 @@ QString ReportPanel::interfaces_html() const {
     html += "<tr><td style='padding: 4px 12px 4px 0'>" +
             QString::fromStdString(body.name).toHtmlEscaped() + "</td>" +
             cell(tr("interface error %1 %").arg(100 * body.interface_error, 0, 'f', 2)) +
-            cell(tr("%1 mm across its borders").arg(body.interface_size, 0, 'g', 3)) + "</tr>";
+            cell(tr("%1 across its borders").arg(units::length(body.interface_size, 3))) + "</tr>";
   return html + "</table>";
 }
 
@@ -118,11 +121,10 @@ QString ReportPanel::places_html() const {
                        .arg(k)
                        .arg(tr("Show"), theme::accent.name())) +
               cell(tr("%1 layers").arg(below[k].layers, 0, 'f', 1)) +
-              cell(tr("on %1 mm²").arg(below[k].area, 0, 'g', 3)) +
+              cell(tr("on %1").arg(units::area(below[k].area))) +
               cell(tr("near (%1, %2, %3)")
-                       .arg(below[k].at[0], 0, 'f', 2)
-                       .arg(below[k].at[1], 0, 'f', 2)
-                       .arg(below[k].at[2], 0, 'f', 2)) +
+                       .arg(units::number(below[k].at[0]), units::number(below[k].at[1]),
+                            units::number(below[k].at[2]))) +
               "</tr>";
     html += "</table>";
     if (below.size() > most_places)

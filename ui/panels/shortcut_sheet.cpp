@@ -26,6 +26,7 @@ ShortcutSheet::ShortcutSheet(const std::vector<QAction*>& actions, QWidget* pare
       {tr("click"), tr("select a body; Ctrl adds")},
       {tr("right click"), tr("what can be done there")},
       {tr("Esc"), tr("end picking, forget what was measured")},
+      {tr("arrows, +, -"), tr("turn the view and zoom; with Shift shift it")},
       {tr("F2"), tr("rename in the study")}};
   rows.insert(rows.end(), std::begin(mouse), std::end(mouse));
   const int half = static_cast<int>(rows.size() + 1) / 2;

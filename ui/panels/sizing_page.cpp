@@ -8,6 +8,7 @@
 #include "ui/panels/form.h"
 #include "ui/session/forecaster.h"
 #include "ui/session/session.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 
@@ -53,11 +54,11 @@ SizingPage::SizingPage(Session& session, Forecaster& forecaster, QWidget* parent
 }
 
 void SizingPage::make_shape(Form* form) {
-  center_ = new PointBox("center", tr("Center, mm; drag its knob in the view"));
+  center_ = new PointBox("center", tr("Center; drag its knob in the view"));
   form->add(tr("Center"), center_);
-  end_ = new PointBox("end", tr("Center of the other end, mm"));
+  end_ = new PointBox("end", tr("Center of the other end"));
   form->add(tr("Other end"), end_);
-  size_ = new PointBox("box_size", tr("Lengths of the edges, mm"));
+  size_ = new PointBox("box_size", tr("Lengths of the edges"));
   size_->set_minimum(0.001);
   form->add(tr("Edges"), size_);
   radius_ = length_box("radius", tr("Radius; drag the outer knob in the view"));
@@ -66,7 +67,7 @@ void SizingPage::make_shape(Form* form) {
   faces_ = styled_label({}, "soft");
   form->add(tr("Faces"), faces_);
   depth_ = length_box("depth", tr("How far below the faces the size holds"));
-  depth_->setSpecialValueText(tr("0 mm"));
+  depth_->setSpecialValueText(units::length(0));
   form->add(tr("Depth"), depth_);
   for (PointBox* box : {center_, end_, size_})
     connect(box, &PointBox::edited, this, &SizingPage::edit_shape);
@@ -79,7 +80,7 @@ void SizingPage::make_asked(Form* form) {
   asks_->setObjectName("asks");
   asks_->addItem(tr("size"));
   asks_->addItem(tr("factor of the natural size"));
-  asks_->setToolTip(tr("A size in mm, or a factor of the size that the walls ask for there"));
+  asks_->setToolTip(tr("A size, or a factor of the size that the walls ask for there"));
   form->add(tr("Asks for"), asks_);
   value_ = number_box(1e-6, 1e6, 0.05, "asked_value",
                       tr("The smaller, the more elements. A factor above 1 is coarser, and needs\n"
@@ -134,7 +135,10 @@ void SizingPage::edit_asked() {
   edit(tr("What %1 asks"), [this](SizingObject& o) {
     auto* c = std::get_if<SizeCorrection>(&o.asks);
     if (!c) return;
-    (c->size ? c->size : c->factor) = value_->value();
+    if (c->size)
+      c->size = value_->value() * units::per_unit();
+    else
+      c->factor = value_->value();
     c->gradation = gradation_->value();
     c->keep_directions = directions_->isChecked();
   });
@@ -202,9 +206,9 @@ void SizingPage::show_asked(const SizingObject& object) {
   zone_->setVisible(!c);
   if (!c) return;
   asks_->setCurrentIndex(c->size ? 0 : 1);
-  value_->setSuffix(c->size ? tr(" mm") : QString());
+  value_->setSuffix(c->size ? " " + units::name() : QString());
   value_->setPrefix(c->size ? QString() : "× ");
-  value_->setValue(c->size ? *c->size : c->factor.value_or(1));
+  value_->setValue(c->size ? *c->size / units::per_unit() : c->factor.value_or(1));
   gradation_->setValue(c->gradation);
   directions_->setChecked(c->keep_directions);
 }

@@ -34,8 +34,10 @@ StudyPanel::StudyPanel(Session& session, Actions& actions, QWidget* parent)
   add->setAccessibleName(tr("Add"));
   add->setPopupMode(QToolButton::InstantPopup);
   auto* menu = new QMenu(add);
-  for (const Act act : {Act::add, Act::add_group, Act::count, Act::correct_near, Act::correct_face,
-                        Act::add_sphere, Act::add_box, Act::add_cylinder, Act::count, Act::add_cut})
+  for (const Act act :
+       {Act::add, Act::zone_ball, Act::zone_box, Act::zone_cylinder, Act::zone_half_space,
+        Act::count, Act::add_group, Act::count, Act::correct_near, Act::correct_face,
+        Act::add_sphere, Act::add_box, Act::add_cylinder, Act::count, Act::add_cut})
     if (act == Act::count)
       menu->addSeparator();
     else
@@ -164,7 +166,9 @@ void StudyPanel::context_menu(const QPoint& at) {
       if (item.index >= 0)
         fill_body_menu(menu);
       else
-        menu.addAction(actions_[Act::add]);
+        for (const Act act :
+             {Act::add, Act::zone_ball, Act::zone_box, Act::zone_cylinder, Act::zone_half_space})
+          menu.addAction(actions_[act]);
       break;
     case ItemKind::group:
       menu.addAction(actions_[Act::add_group]);

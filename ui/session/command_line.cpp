@@ -164,6 +164,9 @@ Result<std::string> command_line(const Study& study) {
   for (const auto& [mm, name] : units)
     if (unit == mm) text += std::string(" --unit ") + name;
   if (!study.zones.empty()) return cannot("bodies by formula");
+  for (const BodySettings& body : study.bodies)
+    if (study.domain && role_rank(body.role) != role_rank(BodyRole::none))
+      return cannot("the roles of bodies");
   for (const BodySettings& body : study.bodies) {
     // What is around the bodies has settings of its own, which no option says.
     const bool around = has_background(study) && body.name == kBackground;

@@ -18,6 +18,7 @@ std::string relevant(Study study) {
   for (BodySettings& body : study.bodies) {
     body.visible = true;
     body.color.reset();
+    body.role = BodyRole::none;
   }
   return study_to_json(study);
 }

@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
 /// Beside the study: the file it is to be saved to.
 fs::path target_file(fs::path study) { return study.replace_extension(".target"); }
 
-bool runs(const std::string& pid) {
+}  // namespace
+
+bool program_runs(const std::string& pid) {
   const long number = std::strtol(pid.c_str(), nullptr, 10);
   return number > 0 && (kill(static_cast<pid_t>(number), 0) == 0 || errno == EPERM);
 }
-
-}  // namespace
 
 Recovery::Recovery(Session& session, fs::path folder)
     : QObject(&session),
@@ -63,7 +63,7 @@ std::vector<Recovery::Left> Recovery::left_behind() const {
   std::error_code ec;
   for (const auto& entry : fs::directory_iterator(folder_, ec)) {
     const fs::path& file = entry.path();
-    if (file.extension() != ".lamella" || runs(file.stem().string())) continue;
+    if (file.extension() != ".lamella" || program_runs(file.stem().string())) continue;
     const Result<std::string> target = read_file(target_file(file));
     left.push_back({file, target ? fs::path(*target) : fs::path()});
   }

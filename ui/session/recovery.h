@@ -3,11 +3,15 @@
 #include <QObject>
 #include <QTimer>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace lamella::ui {
 
 class Session;
+
+/// Whether the program with this number, as text, is still there.
+bool program_runs(const std::string& pid);
 
 /// Keeps what is unsaved in a file of its own, soon after each edit, so that a crash loses nothing.
 /// The file goes when the study is saved, when nothing is unsaved, and when the program ends in

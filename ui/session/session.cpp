@@ -8,6 +8,7 @@
 #include "ui/commands/edit_study.h"
 #include "ui/commands/study_edits.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 namespace {
@@ -39,10 +40,7 @@ QString box_size(const ReferenceSurface<3>& surface) {
     high = high.cwiseMax(p);
   }
   const Vec<3> size = high - low;
-  return QString("%1 × %2 × %3 mm")
-      .arg(size[0], 0, 'g', 4)
-      .arg(size[1], 0, 'g', 4)
-      .arg(size[2], 0, 'g', 4);
+  return units::size(size);
 }
 
 /// What the mesh depends on, as text.
@@ -55,6 +53,8 @@ std::string asked(Study study) {
   for (BodySettings& body : study.bodies) {
     body.visible = true;
     body.color.reset();
+    // Who keeps what bodies share is asked in one mesh of all only.
+    if (!study.domain) body.role = BodyRole::none;
   }
   return study_to_json(study);
 }
@@ -69,7 +69,7 @@ Session::Session(Services services, QObject* parent)
     study.options.memory = memory;
   study_ = std::make_shared<const Study>(std::move(study));
   connect(&worker_, &Worker::progressed, this, [this](double fraction, const QString& phase) {
-    const double elapsed = static_cast<double>(clock_.elapsed()) / 1000;
+    const double elapsed = static_cast<double>(clock_.elapsed() - held_) / 1000;
     const bool known = fraction > 0.02 && elapsed > 1;
     Q_EMIT progressed(fraction, phase, known ? elapsed * (1 - fraction) / fraction : -1);
   });
@@ -82,6 +82,16 @@ QColor Session::color_of(int index) const {
   if (const auto& own = study_->bodies[k].color)
     return QColor::fromRgbF(static_cast<float>((*own)[0]), static_cast<float>((*own)[1]),
                             static_cast<float>((*own)[2]));
+  switch (study_->bodies[k].role) {
+    case BodyRole::mold:
+      return theme::steel;
+    case BodyRole::insert:
+      return theme::brass;
+    case BodyRole::channel:
+      return theme::coolant;
+    default:
+      break;
+  }
   if (has_background(*study_) && k + 1 == study_->bodies.size()) return theme::surroundings;
   return body_color(index,
                     k < parts_->size() ? (*parts_)[k].color : std::array<double, 3>{-1, -1, -1});
@@ -163,6 +173,7 @@ void Session::set_activity(Activity activity) {
 
 void Session::begin(Activity activity, Worker::Job job) {
   clock_.restart();
+  held_ = 0;
   worker_.start(std::move(job));
   set_activity(activity);
 }
@@ -350,7 +361,9 @@ void Session::open_mesh(const std::filesystem::path& file) {
   Q_EMIT logged(tr("Opening the mesh %1").arg(file_name(file)));
   begin(Activity::loading, [this, file](const Progress&) -> Worker::Done {
     Result<MeshState> read = services_.read_mesh(file);
-    return [this, read = std::move(read), file]() mutable {
+    std::shared_ptr<const MeshFaces> faces;
+    if (read) faces = std::make_shared<const MeshFaces>(mesh_faces(read->mesh));
+    return [this, read = std::move(read), faces, file]() mutable {
       set_activity(Activity::idle);
       if (!read) return report(read.error());
       Study study;
@@ -361,6 +374,7 @@ void Session::open_mesh(const std::filesystem::path& file) {
       iteration.record.nodes = state->mesh.node_count();
       iteration.record.elements = state->mesh.element_count();
       iteration.state = state;
+      iteration.faces = faces;
       add_iteration(std::move(iteration));
     };
   });
@@ -399,11 +413,11 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
   arrange_bodies(study, read.parts);
   for (std::size_t k = first_new; k < read.parts.size(); ++k) {
     const Part& part = read.parts[k];
-    Q_EMIT logged(tr("%1: %2, %3 triangles on %4 faces, volume %L5 mm³")
+    Q_EMIT logged(tr("%1: %2, %3 triangles on %4 faces, volume %5")
                       .arg(text(part.name), box_size(part.surface))
                       .arg(part.surface.facets.size())
                       .arg(part.surface.faces.size())
-                      .arg(part.cad_volume, 0, 'f', 1));
+                      .arg(units::volume(part.cad_volume)));
     for (const std::string& note : part.notes) Q_EMIT logged(text(part.name + ": " + note));
   }
   parts_ = std::make_shared<const std::vector<Part>>(std::move(read.parts));
@@ -535,7 +549,8 @@ void Session::run() {
         Result<Outcome> result = services_.run(
             *study, *parts, meshers, progress,
             [this](const IterationRecord& record, std::shared_ptr<const MeshState> state) {
-              worker_.post([this, record, state = std::move(state)] {
+              auto faces = std::make_shared<const MeshFaces>(mesh_faces(state->mesh));
+              worker_.post([this, record, state = std::move(state), faces] {
                 Q_EMIT logged(tr("Iteration %1: %L2 nodes, %L3 elements, layers %4 (5 %: %5), %6 s")
                                   .arg(record.iteration)
                                   .arg(record.nodes)
@@ -547,14 +562,19 @@ void Session::run() {
                   Q_EMIT logged(tr("%L1 mixed elements, interface error %2")
                                     .arg(record.mixed)
                                     .arg(record.interface_error, 0, 'f', 4));
-                add_iteration({record, state});
+                add_iteration({record, state, faces});
               });
             });
-        return [this, result = std::move(result)]() mutable { finish_run(std::move(result)); };
+        std::shared_ptr<const MeshFaces> faces;
+        if (result && result->state)
+          faces = std::make_shared<const MeshFaces>(mesh_faces(result->state->mesh));
+        return [this, result = std::move(result), faces]() mutable {
+          finish_run(std::move(result), faces);
+        };
       });
 }
 
-void Session::finish_run(Result<Outcome> result) {
+void Session::finish_run(Result<Outcome> result, std::shared_ptr<const MeshFaces> faces) {
   set_activity(Activity::idle);
   if (!result) {
     report(result.error());
@@ -562,7 +582,7 @@ void Session::finish_run(Result<Outcome> result) {
     return;
   }
   outcome_ = std::move(*result);
-  if (outcome_->state) keep_best(outcome_->state);
+  if (outcome_->state) keep_best(outcome_->state, faces);
   for (const BodyOutcome& body : outcome_->bodies) {
     Q_EMIT logged(tr("%1: first mesh by %2, layers %3 asked, %4 on average (5 %: %5)")
                       .arg(text(body.name), text(body.first_mesh_by))
@@ -580,7 +600,8 @@ void Session::finish_run(Result<Outcome> result) {
   Q_EMIT run_finished();
 }
 
-void Session::keep_best(const std::shared_ptr<const MeshState>& state) {
+void Session::keep_best(const std::shared_ptr<const MeshState>& state,
+                        const std::shared_ptr<const MeshFaces>& faces) {
   // The loop keeps its best mesh, which need not be the last one it told about.
   const bool follow = shown_ + 1 == static_cast<int>(iterations_.size());
   const auto best =
@@ -590,6 +611,7 @@ void Session::keep_best(const std::shared_ptr<const MeshState>& state) {
       });
   if (best != iterations_.rend()) {
     best->state = state;
+    best->faces = faces;
     if (follow) show_iteration(static_cast<int>(iterations_.rend() - best) - 1);
     return;
   }
@@ -599,7 +621,19 @@ void Session::keep_best(const std::shared_ptr<const MeshState>& state) {
   mixed.record.nodes = state->mesh.node_count();
   mixed.record.elements = state->mesh.element_count();
   mixed.state = state;
+  mixed.faces = faces;
   add_iteration(std::move(mixed));
+}
+
+void Session::pause(bool on) {
+  if (activity_ != Activity::running || on == worker_.paused() || worker_.cancelling()) return;
+  worker_.pause(on);
+  if (on)
+    held_at_ = clock_.elapsed();
+  else
+    held_ += clock_.elapsed() - held_at_;
+  Q_EMIT logged(on ? tr("Paused.") : tr("Goes on."));
+  Q_EMIT activity_changed();
 }
 
 void Session::cancel() {

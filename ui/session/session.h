@@ -13,6 +13,7 @@
 #include "core/study/domain.h"
 #include "ui/services.h"
 #include "ui/session/item.h"
+#include "ui/session/mesh_faces.h"
 #include "ui/session/read_parts.h"
 #include "ui/session/worker.h"
 
@@ -25,6 +26,7 @@ enum class Activity { idle, loading, running, exporting, checking, flowing };
 struct Iteration {
   IterationRecord record;
   std::shared_ptr<const MeshState> state;
+  std::shared_ptr<const MeshFaces> faces{};  ///< of its mesh; may be null
 };
 
 /// Overlaps and gaps between the bodies, as they were looked for.
@@ -52,6 +54,7 @@ class Session : public QObject {
   /// What every body of the study looks like: the parts, the zones as soon as their surfaces are
   /// known, and the background, which has none of its own.
   const std::vector<Part>& shapes() const { return *shapes_; }
+  std::shared_ptr<const std::vector<Part>> shapes_value() const { return shapes_; }
   /// Surface of the domain; empty where there is none or bodies are it.
   const ReferenceSurface<3>& hull() const { return hull_; }
   /// Settings of body `index`: parts, zones and the background, in this order.
@@ -61,6 +64,7 @@ class Session : public QObject {
   const std::vector<Iteration>& iterations() const { return iterations_; }
   const std::optional<Outcome>& outcome() const { return outcome_; }
   Activity activity() const { return activity_; }
+  bool paused() const { return worker_.paused(); }
   bool cancelling() const { return worker_.cancelling(); }
   /// Nothing to show: neither parts nor a mesh.
   bool empty() const { return !has_bodies() && iterations_.empty(); }
@@ -82,6 +86,9 @@ class Session : public QObject {
   /// Index into `iterations` of the one being looked at; -1: none, the parts are shown.
   int shown() const { return shown_; }
   std::shared_ptr<const MeshState> shown_state() const;
+  std::shared_ptr<const MeshFaces> shown_faces() const {
+    return shown_ < 0 ? nullptr : iterations_[static_cast<std::size_t>(shown_)].faces;
+  }
   void show_iteration(int index);
 
   /// Body selected everywhere; -1: none. Of several it is the one chosen last.
@@ -128,6 +135,8 @@ class Session : public QObject {
   bool can_flow() const { return activity_ == Activity::idle && shown_state() != nullptr; }
   /// What was found last; nothing once the bodies have changed.
   const std::optional<OverlapCheck>& overlaps() const { return overlaps_; }
+  /// Holds the run, or lets it go on.
+  void pause(bool on);
   /// Cancels what is under way.
   void cancel();
   /// Writes the shown mesh.
@@ -190,9 +199,10 @@ class Session : public QObject {
   void replace_all(Study study, ReadParts read, std::size_t first_new);
   void clear_iterations();
   void add_iteration(Iteration iteration);
-  void finish_run(Result<Outcome> result);
+  void finish_run(Result<Outcome> result, std::shared_ptr<const MeshFaces> faces = nullptr);
   /// The mesh a run ends with, among the iterations.
-  void keep_best(const std::shared_ptr<const MeshState>& state);
+  void keep_best(const std::shared_ptr<const MeshState>& state,
+                 const std::shared_ptr<const MeshFaces>& faces);
 
   Services services_;
   std::shared_ptr<const Study> study_ = std::make_shared<Study>();
@@ -221,8 +231,10 @@ class Session : public QObject {
   int merges_ = 0;
   QUndoStack undo_;
   QElapsedTimer clock_;
-  Worker shaper_;  // of zones
-  Worker worker_;  // last: its destructor waits for the job that uses the rest
+  qint64 held_ = 0;     // ms of the activity that it was paused
+  qint64 held_at_ = 0;  // ms, where the pause under way began
+  Worker shaper_;       // of zones
+  Worker worker_;       // last: its destructor waits for the job that uses the rest
 };
 
 }  // namespace lamella::ui

@@ -22,15 +22,18 @@ void Worker::start(Job job) {
     fraction_ = 0;
     phase_.clear();
     fresh_ = true;
+    hold_ = false;
   }
+  paused_ = false;
   timer_.start();
   thread_ = std::jthread([this, job = std::move(job)](std::stop_token stop) {
     const Progress progress(
-        [this](double fraction, std::string_view phase) {
-          std::lock_guard lock(mutex_);
+        [this, stop](double fraction, std::string_view phase) {
+          std::unique_lock lock(mutex_);
           fraction_ = fraction;
           phase_ = phase;
           fresh_ = true;
+          released_.wait(lock, stop, [this] { return !hold_; });
         },
         stop);
     Done done = job(progress);
@@ -43,6 +46,15 @@ void Worker::start(Job job) {
       Q_EMIT finished();
     });
   });
+}
+
+void Worker::pause(bool on) {
+  paused_ = on;
+  {
+    std::lock_guard lock(mutex_);
+    hold_ = on;
+  }
+  released_.notify_all();
 }
 
 void Worker::cancel() { thread_.request_stop(); }

@@ -2,6 +2,7 @@
 
 #include <QObject>
 #include <QTimer>
+#include <condition_variable>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -29,6 +30,10 @@ class Worker : public QObject {
   bool cancelling() const { return busy_ && thread_.get_stop_token().stop_requested(); }
   /// Starts `job`; must not be busy.
   void start(Job job);
+  /// Holds the job at its next report of progress, or lets it go on. One that is held can be
+  /// cancelled; a new job is not held.
+  void pause(bool on);
+  bool paused() const { return busy_ && paused_; }
   /// Asks the job to stop; `finished` comes when it has.
   void cancel();
   /// Runs `call` in the window's thread; for use by the running job.
@@ -45,10 +50,13 @@ class Worker : public QObject {
   std::jthread thread_;
   bool busy_ = false;
   QTimer timer_;
-  std::mutex mutex_;  // guards what follows: written by the job, read by the timer
+  bool paused_ = false;  // as `hold_`, for the window's thread
+  std::mutex mutex_;     // guards what follows: written by the job, read by the timer
   double fraction_ = 0;
   std::string phase_;
   bool fresh_ = false;
+  bool hold_ = false;
+  std::condition_variable_any released_;
 };
 
 }  // namespace lamella::ui

@@ -44,8 +44,9 @@ struct Legend {
   double low = 0;
   double high = 1;
   ColorMap map;
-  QStringList bands{};  ///< what each band of the map is; empty: values are told at ticks
-  QString missing{};    ///< what gray stands for; empty: nothing is gray
+  QStringList bands{};     ///< what each band of the map is; empty: values are told at ticks
+  bool is_length = false;  ///< values are in mm
+  QString missing{};       ///< what gray stands for; empty: nothing is gray
 };
 
 }  // namespace lamella::ui

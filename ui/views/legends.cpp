@@ -8,16 +8,25 @@
 namespace lamella::ui {
 namespace {
 
-QString tr(const char* text) { return QCoreApplication::translate("Scene", text); }
+struct Texts {
+  Q_DECLARE_TR_FUNCTIONS(lamella::ui::Legends)
+};
 
 QString flow_title(ColorBy field) {
-  return field == ColorBy::speed      ? tr("Velocity, mm/s")
-         : field == ColorBy::pressure ? tr("Pressure, MPa")
-         : field == ColorBy::shear    ? tr("Shear rate, 1/s")
-                                      : tr("Flow indicator");
+  return field == ColorBy::speed      ? Texts::tr("Velocity, mm/s")
+         : field == ColorBy::pressure ? Texts::tr("Pressure, MPa")
+         : field == ColorBy::shear    ? Texts::tr("Shear rate, 1/s")
+                                      : Texts::tr("Flow indicator");
 }
 
 }  // namespace
+
+Legend thickness_legend(std::vector<double> values) {
+  const auto [low, high] = robust_range(std::move(values));
+  Legend legend{Texts::tr("Wall thickness"), low, high, sequential_map()};
+  legend.is_length = true;
+  return legend;
+}
 
 Legend field_legend(ColorBy field, const MeshState& state, int layers_asked,
                     const std::string& body) {
@@ -26,25 +35,25 @@ Legend field_legend(ColorBy field, const MeshState& state, int layers_asked,
     case ColorBy::body:
       break;
     case ColorBy::quality:
-      legend = {tr("Quality c(T)"), 0, 1, rating_map()};
+      legend = {Texts::tr("Quality c(T)"), 0, 1, rating_map()};
       break;
     case ColorBy::thickness: {
       const auto& t = state.thickness;
-      const auto [low, high] = robust_range({t.begin() + 1, t.end()});
-      legend = {tr("Wall thickness, mm"), low, high, sequential_map()};
+      legend = thickness_legend({t.begin() + 1, t.end()});
       break;
     }
     case ColorBy::layers: {
       // One band a layer, the one of n layers being the first good one.
       const int n = layers_asked;
-      legend = {tr("Layers through the wall, %1 asked").arg(n), 0, 2.0 * n, rating_map()};
+      legend = {Texts::tr("Layers through the wall, %1 asked").arg(n), 0, 2.0 * n, rating_map()};
       legend.map.bands = std::min(2 * n, 24);
-      legend.missing = tr("no wall to count in");
+      legend.missing = Texts::tr("no wall to count in");
       break;
     }
     case ColorBy::filling:
-      legend = {tr("Filled by %1").arg(QString::fromStdString(body)), 0, 1, filling_map()};
-      legend.bands = {tr("0 %"), tr("< 50 %"), tr("≥ 50 %"), tr("100 %")};
+      legend = {Texts::tr("Filled by %1").arg(QString::fromStdString(body)), 0, 1, filling_map()};
+      legend.bands = {Texts::tr("0 %"), Texts::tr("< 50 %"), Texts::tr("≥ 50 %"),
+                      Texts::tr("100 %")};
       break;
     case ColorBy::speed:
     case ColorBy::pressure:
@@ -61,14 +70,14 @@ Legend field_legend(ColorBy field, const MeshState& state, int layers_asked,
 Legend missing_legend(ColorBy field, bool meshed) {
   Legend legend;
   legend.title = of_flow(field)                ? flow_title(field)
-                 : field == ColorBy::quality   ? tr("Quality c(T)")
-                 : field == ColorBy::thickness ? tr("Wall thickness")
-                 : field == ColorBy::layers    ? tr("Layers through the wall")
-                                               : tr("Filling ratio");
-  legend.missing = !meshed                     ? tr("known once the part is meshed")
-                   : of_flow(field)            ? tr("known once the flow is solved")
-                   : field == ColorBy::filling ? tr("this mesh has no fuzzy interfaces")
-                                               : tr("not in this mesh");
+                 : field == ColorBy::quality   ? Texts::tr("Quality c(T)")
+                 : field == ColorBy::thickness ? Texts::tr("Wall thickness")
+                 : field == ColorBy::layers    ? Texts::tr("Layers through the wall")
+                                               : Texts::tr("Filling ratio");
+  legend.missing = !meshed                     ? Texts::tr("known once the part is meshed")
+                   : of_flow(field)            ? Texts::tr("known once the flow is solved")
+                   : field == ColorBy::filling ? Texts::tr("this mesh has no fuzzy interfaces")
+                                               : Texts::tr("not in this mesh");
   return legend;
 }
 

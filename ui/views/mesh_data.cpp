@@ -110,27 +110,29 @@ std::vector<double> field_values(const MeshState& state, ColorBy field) {
   return speed;
 }
 
-void add_fields(const MeshState& state, vtkIntArray& element, vtkUnstructuredGrid& grid) {
+void add_fields(const MeshState& state, const std::vector<std::int32_t>& element,
+                const std::vector<std::int32_t>& node, vtkDataSetAttributes& cells,
+                vtkDataSetAttributes& points) {
   for (const ColorBy field : {ColorBy::quality, ColorBy::thickness, ColorBy::layers, ColorBy::speed,
                               ColorBy::pressure, ColorBy::shear, ColorBy::indicator}) {
     const std::vector<double> values = field_values(state, field);
     if (values.empty()) continue;
     const auto [name, of_elements] = array_of(field);
+    const std::vector<std::int32_t>& of = of_elements ? element : node;
     vtkNew<vtkFloatArray> array;
     array->SetName(name);
-    if (of_elements) {
-      array->SetNumberOfTuples(element.GetNumberOfTuples());
-      for (vtkIdType k = 0; k < element.GetNumberOfTuples(); ++k)
-        array->SetValue(k, static_cast<float>(values[std::size_t(element.GetValue(k))]));
-      grid.GetCellData()->AddArray(array);
-    } else {
-      array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) + 1);
-      array->SetValue(0, 0);
-      for (std::size_t k = 0; k < values.size(); ++k)
-        array->SetValue(static_cast<vtkIdType>(k) + 1, static_cast<float>(values[k]));
-      grid.GetPointData()->AddArray(array);
+    array->SetNumberOfTuples(static_cast<vtkIdType>(of.size()));
+    float* out = array->GetPointer(0);
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      // The virtual node has no value.
+      const std::int32_t i = of_elements ? of[k] : of[k] - 1;
+      out[k] = i < 0 ? 0 : static_cast<float>(values[static_cast<std::size_t>(i)]);
     }
+    (of_elements ? cells : points).AddArray(array);
   }
+}
+
+void add_velocity(const MeshState& state, vtkDataSetAttributes& points) {
   if (!has_field(state, ColorBy::speed)) return;
   vtkNew<vtkFloatArray> velocity;
   velocity->SetName(velocity_array);
@@ -140,7 +142,7 @@ void add_fields(const MeshState& state, vtkIntArray& element, vtkUnstructuredGri
     const Vec<3>& v = state.flow->velocity[n];
     velocity->SetTuple3(static_cast<vtkIdType>(n), v[0], v[1], v[2]);
   }
-  grid.GetPointData()->AddArray(velocity);
+  points.AddArray(velocity);
 }
 
 vtkSmartPointer<vtkPolyData> feature_data(const ReferenceSurface<3>& surface) {
@@ -199,21 +201,6 @@ vtkSmartPointer<vtkPolyData> feature_data(const SimplexMesh<3>& mesh) {
   return data;
 }
 
-std::vector<std::array<NodeId, 3>> sorted_faces(vtkPolyData& data, vtkIntArray& node) {
-  std::vector<std::array<NodeId, 3>> faces;
-  faces.reserve(static_cast<std::size_t>(data.GetNumberOfCells()));
-  vtkNew<vtkIdList> corner;
-  for (vtkIdType f = 0; f < data.GetNumberOfCells(); ++f) {
-    data.GetCellPoints(f, corner);
-    std::array<NodeId, 3> face{node.GetValue(corner->GetId(0)), node.GetValue(corner->GetId(1)),
-                               node.GetValue(corner->GetId(2))};
-    std::sort(face.begin(), face.end());
-    faces.push_back(face);
-  }
-  std::sort(faces.begin(), faces.end());
-  return faces;
-}
-
 vtkSmartPointer<vtkFloatArray> filling_bands(const Filling& filling, std::int32_t region,
                                              vtkIntArray& element) {
   auto bands = vtkSmartPointer<vtkFloatArray>::New();
@@ -244,12 +231,14 @@ std::pair<double, double> robust_range(std::vector<double> values) {
 }
 
 double typical_edge(vtkPolyData& data) {
+  // Some thousand polygons tell as much as all of them.
+  constexpr vtkIdType enough = 5000;
+  const vtkIdType stride = std::max<vtkIdType>(1, data.GetNumberOfCells() / enough);
   std::vector<double> lengths;
-  lengths.reserve(static_cast<std::size_t>(3 * data.GetNumberOfCells()));
   vtkNew<vtkIdList> corners;
   Vec<3> a;
   Vec<3> b;
-  for (vtkIdType c = 0; c < data.GetNumberOfCells(); ++c) {
+  for (vtkIdType c = 0; c < data.GetNumberOfCells(); c += stride) {
     data.GetCellPoints(c, corners);
     for (vtkIdType k = 0; k < corners->GetNumberOfIds(); ++k) {
       data.GetPoint(corners->GetId(k), a.data());

@@ -1,13 +1,12 @@
 #pragma once
 
+#include <vtkDataSetAttributes.h>
 #include <vtkFloatArray.h>
 #include <vtkIntArray.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
-#include <vtkUnstructuredGrid.h>
 
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -33,19 +32,21 @@ FieldArray array_of(ColorBy field);
 constexpr const char* velocity_array = "velocity";
 /// Whether the mesh carries the field; of the filling ratio, of any body.
 bool has_field(const MeshState& state, ColorBy field);
-/// Values of a field, without the virtual node; those that the grid gets but of the filling ratio.
+/// Values of a field, without the virtual node; empty where there is none, and of the filling
+/// ratio.
 std::vector<double> field_values(const MeshState& state, ColorBy field);
-/// Gives the grid every field of the mesh whose nodes it has, and the elements `element` [cell].
-void add_fields(const MeshState& state, vtkIntArray& element, vtkUnstructuredGrid& grid);
+/// Gives cells that are `element` of the mesh, and points that are `node`, every field of it.
+void add_fields(const MeshState& state, const std::vector<std::int32_t>& element,
+                const std::vector<std::int32_t>& node, vtkDataSetAttributes& cells,
+                vtkDataSetAttributes& points);
+/// Gives points that are all nodes, the virtual one too, the velocity of the flow if there is one.
+void add_velocity(const MeshState& state, vtkDataSetAttributes& points);
 
 /// Lines between CAD faces, sharp or smooth, and the sharp ones within.
 vtkSmartPointer<vtkPolyData> feature_data(const ReferenceSurface<3>& surface);
 
 /// Edges between boundary facets of different CAD faces: the features of a mesh without its part.
 vtkSmartPointer<vtkPolyData> feature_data(const SimplexMesh<3>& mesh);
-
-/// The triangles, each as its nodes in rising order; sorted. `node`: [point] of the mesh.
-std::vector<std::array<NodeId, 3>> sorted_faces(vtkPolyData& data, vtkIntArray& node);
 
 /// [face] the band of its element in `filling_map`, in [0, 1]. `element`: [face].
 vtkSmartPointer<vtkFloatArray> filling_bands(const Filling& filling, std::int32_t region,

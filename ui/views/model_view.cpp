@@ -7,6 +7,7 @@
 #include <QLabel>
 #include <QMenu>
 #include <QMouseEvent>
+#include <QSplitter>
 #include <QTimer>
 #include <cmath>
 
@@ -14,7 +15,11 @@
 #include "ui/actions/actions.h"
 #include "ui/commands/study_edits.h"
 #include "ui/session/session.h"
+#include "ui/session/wall_map.h"
 #include "ui/theme.h"
+#include "ui/units.h"
+#include "ui/views/compare_view.h"
+#include "ui/views/first_direction.h"
 #include "ui/views/overlay.h"
 #include "ui/views/pick_tools.h"
 #include "ui/views/size_shapes.h"
@@ -29,6 +34,8 @@ ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(0);
+  walls_ = std::make_unique<WallMap>(session);
+  connect(walls_.get(), &WallMap::changed, this, &ModelView::follow_walls);
   bar_ = new ViewBar(actions);
   layout->addWidget(bar_);
   connect(bar_, &ViewBar::color_changed, this, &ModelView::follow_study);
@@ -45,7 +52,11 @@ ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
   frame->setObjectName("view_frame");
   auto* inner = new QVBoxLayout(frame);
   inner->setContentsMargins(1, 1, 1, 1);
-  layout->addWidget(frame, 1);
+  sides_ = new QSplitter(Qt::Horizontal);
+  sides_->setHandleWidth(6);
+  sides_->setChildrenCollapsible(false);
+  sides_->addWidget(frame);
+  layout->addWidget(sides_, 1);
   if (VtkView::supported()) {
     view_ = new VtkView;
     scene_ = std::make_unique<Scene>(*view_->renderer());
@@ -60,6 +71,10 @@ ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
     });
     size_tool_ = std::make_unique<SizeTool>(*view_, [this](const SizingShape& shape, int drag) {
       if (size_merge_.first != drag) size_merge_ = {drag, session_.new_merge()};
+      if (const int zone = selected_zone(); zone >= 0)
+        return edit_zone(
+            session_, zone, tr("Shape of %1"), [&](StudyZone& z) { set_shape(z, shape); },
+            size_merge_.second);
       edit_sizing(
           session_, session_.item().index, tr("Move %1"),
           [&](SizingObject& object) { object.shape = shape; }, size_merge_.second);
@@ -92,6 +107,9 @@ ModelView::~ModelView() {
 }
 
 void ModelView::connect_session() {
+  connect(&Units::get(), &Units::changed, this, [this] {
+    if (scene_) refresh();
+  });
   connect(&session_, &Session::parts_changed, this, &ModelView::follow_parts);
   connect(&session_, &Session::study_changed, this, &ModelView::follow_study);
   connect(&session_, &Session::surfaces_changed, this, &ModelView::follow_surfaces);
@@ -115,27 +133,29 @@ void ModelView::connect_session() {
 void ModelView::connect_actions() {
   connect(actions_[Act::crinkle], &QAction::toggled, this, [this](bool on) {
     if (!scene_) return;
-    scene_->set_crinkle(on);
+    each_scene([on](Scene& s) { s.set_crinkle(on); });
     refresh();
   });
   connect(actions_[Act::edges], &QAction::toggled, this, [this](bool on) {
     if (!scene_) return;
-    scene_->set_edges(on);
+    each_scene([on](Scene& s) { s.set_edges(on); });
     refresh();
   });
   connect(actions_[Act::features], &QAction::toggled, this, [this](bool on) {
     if (!scene_) return;
-    scene_->set_features(on);
+    each_scene([on](Scene& s) { s.set_features(on); });
     refresh();
   });
   for (const Act act : {Act::flow_arrows, Act::flow_lines, Act::flow_levels})
     connect(actions_[act], &QAction::toggled, this, [this] {
       if (!scene_) return;
-      scene_->set_flow({actions_[Act::flow_arrows]->isChecked(),
-                        actions_[Act::flow_lines]->isChecked(),
-                        actions_[Act::flow_levels]->isChecked()});
+      const FlowLook look{actions_[Act::flow_arrows]->isChecked(),
+                          actions_[Act::flow_lines]->isChecked(),
+                          actions_[Act::flow_levels]->isChecked()};
+      each_scene([&look](Scene& s) { s.set_flow(look); });
       refresh();
     });
+  connect(actions_[Act::compare], &QAction::toggled, this, &ModelView::compare);
   connect(actions_[Act::section], &QAction::toggled, this, [this](bool on) {
     if (on == section().has_value()) return;
     if (on) {
@@ -176,15 +196,47 @@ void ModelView::connect_actions() {
 void ModelView::follow_surfaces() {
   if (!scene_) return;
   const bool had = scene_->bounds()[0] <= scene_->bounds()[1];
-  std::vector<QColor> colors;
-  for (std::size_t k = 0; k < session_.shapes().size(); ++k)
-    colors.push_back(session_.color_of(static_cast<int>(k)));
-  scene_->set_parts(session_.shapes(), colors);
-  scene_->set_hull(session_.hull());
+  each_scene([this](Scene& s) { set_parts(s); });
   tool_->set_bounds(scene_->bounds());
   groups_shown_.clear();
   follow_study();
   if (!had) look_isometric();
+}
+
+void ModelView::set_parts(Scene& scene) {
+  std::vector<QColor> colors;
+  for (std::size_t k = 0; k < session_.shapes().size(); ++k)
+    colors.push_back(session_.color_of(static_cast<int>(k)));
+  scene.set_parts(session_.shapes(), colors);
+  scene.set_walls(walls_->maps());
+  scene.set_hull(session_.hull());
+}
+
+void ModelView::each_scene(const std::function<void(Scene&)>& change) {
+  if (scene_) change(*scene_);
+  if (compare_) change(compare_->scene());
+}
+
+void ModelView::compare(bool on) {
+  if (!scene_ || on == (compare_ != nullptr)) return;
+  if (!on) {
+    delete compare_;
+    compare_ = nullptr;
+    return;
+  }
+  compare_ = new CompareView(session_, *view_);
+  Scene& other = compare_->scene();
+  set_parts(other);
+  other.set_edges(actions_[Act::edges]->isChecked());
+  other.set_features(actions_[Act::features]->isChecked());
+  other.set_crinkle(actions_[Act::crinkle]->isChecked());
+  other.set_quality_range(quality_range_);
+  groups_shown_.clear();
+  follow_study();
+  other.set_sections(sections_);
+  sides_->insertWidget(0, compare_);
+  sides_->setSizes({sides_->width() / 2, sides_->width() / 2});
+  refresh();
 }
 
 void ModelView::follow_parts() {
@@ -292,6 +344,7 @@ void ModelView::keyPressEvent(QKeyEvent* event) {
   if (event->key() != Qt::Key_Escape) return QWidget::keyPressEvent(event);
   actions_.leave_mode();
   picks_->forget();
+  walls_->stop();
   follow_mode();
   view_->update();
 }
@@ -318,9 +371,12 @@ void ModelView::follow_study() {
   }
   if (count > 0) layers = session_.body(std::clamp(session_.selected(), 0, count - 1)).layers;
   const std::string filled_by = choose_filled();
-  scene_->set_visible(visible);
-  scene_->set_colors(colors);
-  scene_->set_color_by(color_by(), layers, filled_by);
+  each_scene([&](Scene& s) {
+    s.set_visible(visible);
+    s.set_colors(colors);
+    s.set_color_by(color_by(), layers, filled_by);
+  });
+  walls_->want(color_by() == ColorBy::thickness && !session_.shown_state());
   follow_cuts();
   follow_groups();
   follow_sizes();
@@ -369,23 +425,41 @@ void ModelView::follow_groups() {
       }
     }
   }
-  scene_->set_groups(std::move(facet_group), std::move(colors));
+  each_scene([&](Scene& s) { s.set_groups(facet_group, colors); });
+}
+
+int ModelView::selected_zone() const {
+  const Item item = session_.item();
+  const bool one = item.kind == ItemKind::body && session_.selection().size() == 1;
+  return one && session_.is_zone(item.index)
+             ? item.index - static_cast<int>(session_.parts().size())
+             : -1;
 }
 
 void ModelView::follow_sizes() {
   const Item item = session_.item();
   const bool chosen = item.kind == ItemKind::sizing;
   shapes_->set(session_.study().sizing, session_.shapes(), chosen ? item.index : -1);
+  const int zone = selected_zone();
+  if (zone >= 0)
+    return size_tool_->set(knobs_of(session_.study().zones[static_cast<std::size_t>(zone)]));
   size_tool_->set(
       chosen ? std::optional(session_.study().sizing[static_cast<std::size_t>(item.index)].shape)
              : std::nullopt);
+}
+
+void ModelView::follow_walls() {
+  if (!scene_) return;
+  each_scene([this](Scene& s) { s.set_walls(walls_->maps()); });
+  refresh();
 }
 
 void ModelView::follow_mesh() {
   if (!scene_) return;
   const bool had = scene_->bounds()[0] <= scene_->bounds()[1];
   picks_->forget();
-  scene_->set_mesh(session_.shown_state());
+  scene_->set_mesh(session_.shown_state(), session_.shown_faces());
+  walls_->want(color_by() == ColorBy::thickness && !session_.shown_state());
   if (!session_.has_bodies()) follow_study();
   tool_->set_bounds(scene_->bounds());
   if (!had) look_isometric();
@@ -393,9 +467,13 @@ void ModelView::follow_mesh() {
 }
 
 void ModelView::refresh() {
-  overlay_->set_legend(scene_->legend());
+  Legend legend = scene_->legend();
+  if (!session_.shown_state() && color_by() == ColorBy::thickness && !walls_->status().isEmpty())
+    legend.missing = walls_->status();
+  overlay_->set_legend(legend);
   overlay_->set_scale_visible(!session_.empty());
   view_->update();
+  if (compare_) compare_->refresh();
 }
 
 void ModelView::set_color_by(ColorBy color_by) { bar_->set_color_by(color_by); }
@@ -518,7 +596,7 @@ void ModelView::apply_sections() {
   QTimer::singleShot(0, this, [this] {
     if (!section_pending_) return;
     section_pending_ = false;
-    scene_->set_sections(sections_);
+    each_scene([this](Scene& s) { s.set_sections(sections_); });
     refresh();
   });
 }
@@ -526,13 +604,15 @@ void ModelView::apply_sections() {
 void ModelView::refresh_theme() {
   if (!view_) return;
   view_->refresh_theme();
+  if (compare_) compare_->refresh_theme();
   view_->update();
   overlay_->update();
 }
 
 void ModelView::set_quality_range(const std::optional<std::pair<double, double>>& range) {
   if (!scene_) return;
-  scene_->set_quality_range(range);
+  quality_range_ = range;
+  each_scene([&](Scene& s) { s.set_quality_range(range); });
   refresh();
 }
 
@@ -546,6 +626,10 @@ QImage ModelView::picture(const QSize& pixels) {
   return image;
 }
 
+std::array<double, 6> ModelView::bounds() const {
+  return scene_ ? scene_->bounds() : std::array<double, 6>{1, -1, 1, -1, 1, -1};
+}
+
 void ModelView::fit() {
   if (view_ && scene_->bounds()[0] <= scene_->bounds()[1]) view_->fit(scene_->bounds());
 }
@@ -555,43 +639,8 @@ void ModelView::look(const Vec<3>& direction, const Vec<3>& up) {
     view_->look(direction, up, scene_->bounds());
 }
 
-Vec<3> ModelView::first_direction() const {
-  // Flat parts are seen on their flat side, and from where they have more to show.
-  const auto b = scene_->bounds();
-  int thin = 0;
-  int wide = 0;
-  const Vec<3> size(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
-  size.minCoeff(&thin);
-  size.maxCoeff(&wide);
-  Vec<3> direction(-0.55, 0.72, -0.58);
-  if (size[thin] < 0.35 * size[3 - thin - wide]) {
-    direction = Vec<3>(-0.42, 0.48, -0.46);
-    direction[thin] = direction[thin] < 0 ? -0.85 : 0.85;
-    double shown = 0;  // CAD faces that look our way, less those that look away
-    double all = 0;
-    for (const Part& part : session_.shapes()) {
-      std::vector<double> along(part.surface.faces.size());
-      all += static_cast<double>(along.size());
-      for (std::size_t k = 0; k < part.surface.facets.size(); ++k) {
-        const auto& f = part.surface.facets[k];
-        const Vec<3>& a = part.surface.points[static_cast<std::size_t>(f[0])];
-        const Vec<3> n = (part.surface.points[static_cast<std::size_t>(f[1])] - a)
-                             .cross(part.surface.points[static_cast<std::size_t>(f[2])] - a);
-        if (std::abs(n[thin]) > 0.5 * n.norm())
-          along[static_cast<std::size_t>(part.surface.facet_face[k])] += n[thin];
-      }
-      for (const double n : along)
-        if (n != 0) shown += n * direction[thin] < 0 ? 1 : -1;
-    }
-    // From below only if there is much more to see there.
-    const double much = thin == 2 ? 0.5 : 0.0;
-    if (shown < -much * all) direction[thin] = -direction[thin];
-  }
-  return direction.normalized();
-}
-
 void ModelView::look_isometric() {
-  if (scene_) look(first_direction(), Vec<3>::UnitZ());
+  if (scene_) look(first_direction(scene_->bounds(), session_.shapes()), Vec<3>::UnitZ());
 }
 
 void ModelView::look_near(const Vec<3>& center, double radius) {
@@ -631,7 +680,7 @@ QImage ModelView::picture() {
   if (!view_) return {};
   if (section_pending_) {
     section_pending_ = false;
-    scene_->set_sections(sections_);
+    each_scene([this](Scene& s) { s.set_sections(sections_); });
     refresh();
   }
   overlay_->set_handle_visible(false);

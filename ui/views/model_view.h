@@ -3,6 +3,8 @@
 #include <QImage>
 #include <QPointF>
 #include <QWidget>
+#include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -11,17 +13,20 @@
 
 class QLabel;
 class QMouseEvent;
+class QSplitter;
 class QKeyEvent;
 
 namespace lamella::ui {
 
 class Actions;
+class CompareView;
 class Overlay;
 class PickTools;
 class Session;
 class SizeShapes;
 class SizeTool;
 class ViewBar;
+class WallMap;
 class VtkView;
 
 /// The 3D view of the session with its bar: coloring, edges, section and standard views.
@@ -54,7 +59,12 @@ class ModelView : public QWidget {
   void look_at_section();
   /// Brings the cube of half width `radius` (mm) around `center` close.
   void look_near(const Vec<3>& center, double radius);
+  /// As those of the scene; empty where nothing is drawn.
+  std::array<double, 6> bounds() const;
   const Scene* scene() const { return scene_.get(); }
+  /// The second view, beside this one; null while there is none.
+  CompareView* compared() const { return compare_; }
+  const WallMap& walls() const { return *walls_; }
   VtkView* vtk_view() const { return view_; }
 
  protected:
@@ -68,14 +78,20 @@ class ModelView : public QWidget {
   void follow_surfaces();
   void follow_selection();
   bool mouse(QMouseEvent* event);
-  Vec<3> first_direction() const;
   void follow_study();
   void follow_mesh();
   void follow_cuts();
   void follow_groups();
   /// Name of the body whose filling is shown: the selected one.
   std::string choose_filled();
+  void compare(bool on);
+  /// Does the same to what either view draws.
+  void each_scene(const std::function<void(Scene&)>& change);
+  void set_parts(Scene& scene);
+  /// The zone that is selected alone; -1: none is.
+  int selected_zone() const;
   void follow_sizes();
+  void follow_walls();
   void follow_mode();
   void apply_sections();
   void start_section(int axis);
@@ -90,10 +106,13 @@ class ModelView : public QWidget {
   Actions& actions_;
   VtkView* view_ = nullptr;  // null where OpenGL is missing
   Overlay* overlay_ = nullptr;
+  QSplitter* sides_ = nullptr;
+  CompareView* compare_ = nullptr;
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<SectionTool> tool_;
   std::optional<QPointF> pressed_;  // where a click may have begun
   ViewBar* bar_ = nullptr;
+  std::unique_ptr<WallMap> walls_;
   std::unique_ptr<PickTools> picks_;
   std::unique_ptr<SizeShapes> shapes_;
   std::unique_ptr<SizeTool> size_tool_;
@@ -102,6 +121,7 @@ class ModelView : public QWidget {
   int drag_merge_ = 0;
   std::pair<int, int> size_merge_{-1, 0};  // press of the size tool, and its step to undo
   bool section_pending_ = false;
+  std::optional<std::pair<double, double>> quality_range_;
   std::string groups_shown_;
 };
 

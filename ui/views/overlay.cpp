@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "ui/theme.h"
+#include "ui/units.h"
 #include "ui/views/vtk_view.h"
 
 namespace lamella::ui {
@@ -110,7 +111,8 @@ void Overlay::paint_legend(QPainter& painter) const {
   QFont bold = font();
   bold.setWeight(QFont::DemiBold);
   painter.setFont(bold);
-  painter.drawText(box.adjusted(14, 7, -14, 0), Qt::AlignLeft | Qt::AlignTop, legend_.title);
+  painter.drawText(box.adjusted(14, 7, -14, 0), Qt::AlignLeft | Qt::AlignTop,
+                   legend_.is_length ? legend_.title + ", " + units::name() : legend_.title);
 
   painter.setFont(small);
   if (legend_.map.stops.empty()) {  // nothing to read off
@@ -128,13 +130,14 @@ void Overlay::paint_legend(QPainter& painter) const {
   painter.setFont(small);
   painter.setPen(theme::soft_text);
   constexpr int ticks = 4;
+  const double unit = legend_.is_length ? units::per_unit() : 1;
   const auto bands = legend_.bands.size();
   for (int k = 0; k < bands; ++k)
     painter.drawText(
         QRectF(bar.left() + bar.width() * k / bands, bar.bottom() + 3, bar.width() / bands, 18),
         int(Qt::AlignHCenter) | int(Qt::AlignTop), legend_.bands[k]);
   for (int k = 0; k <= ticks && bands == 0; ++k) {
-    const double value = legend_.low + (legend_.high - legend_.low) * k / ticks;
+    const double value = (legend_.low + (legend_.high - legend_.low) * k / ticks) / unit;
     const double x = bar.left() + bar.width() * k / ticks;
     const auto align = k == 0 ? Qt::AlignLeft : k == ticks ? Qt::AlignRight : Qt::AlignHCenter;
     const double left = k == 0 ? x : k == ticks ? x - 60 : x - 30;
@@ -151,7 +154,8 @@ void Overlay::paint_legend(QPainter& painter) const {
 void Overlay::paint_scale(QPainter& painter) const {
   const double pixel = view_.pixel_size();
   if (!(pixel > 0)) return;
-  const double length = round_down(pixel * 150);
+  const double unit = units::per_unit();
+  const double length = round_down(pixel * 150 / unit) * unit;
   const double width_px = length / pixel;
   const double right = width() - 20;
   const double y = height() - 20;
@@ -161,7 +165,7 @@ void Overlay::paint_scale(QPainter& painter) const {
   painter.drawLine(QPointF(right, y - 4), QPointF(right, y + 4));
   painter.setFont(font());
   painter.drawText(QRectF(right - 200, y - 24, 200, 18), Qt::AlignRight | Qt::AlignVCenter,
-                   tr("%1 mm").arg(length));
+                   units::length(length));
 }
 
 void Overlay::paint_axes(QPainter& painter) const {

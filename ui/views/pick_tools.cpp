@@ -19,6 +19,7 @@
 #include "ui/commands/study_edits.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 #include "ui/views/mesh_data.h"
 #include "ui/views/vtk_view.h"
 
@@ -28,7 +29,9 @@ namespace {
 /// Radius of a new sphere, as a share of the body's diagonal.
 constexpr double gate_share = 0.05;
 
-QString tr(const char* text) { return QCoreApplication::translate("PickTools", text); }
+struct Texts {
+  Q_DECLARE_TR_FUNCTIONS(lamella::ui::PickTools)
+};
 
 void paint_tag(QPainter& painter, const QPointF& at, const QString& text) {
   QFont bold = painter.font();
@@ -116,7 +119,7 @@ bool PickTools::click(const std::optional<Picked>& picked) {
       break;
     case Act::correct_near:
       if (picked->part < 0) break;
-      add_sizing(session_, body, tr("near gate"),
+      add_sizing(session_, body, Texts::tr("near gate"),
                  SphereShape{picked->point, gate_share * diagonal_of(picked->part)});
       actions_.leave_mode();
       break;
@@ -124,7 +127,7 @@ bool PickTools::click(const std::optional<Picked>& picked) {
       if (!session_.is_part(picked->part) || !picked->face) break;
       FacesShape shape;
       shape.ids = {*picked->face};
-      add_sizing(session_, body, tr("face size"), shape);
+      add_sizing(session_, body, Texts::tr("face size"), shape);
       actions_.leave_mode();
       break;
     }
@@ -158,20 +161,21 @@ void PickTools::flood_from(const Picked& picked) {
   const std::string body = session_.body(picked.part).name;
   if (session_.item().kind != ItemKind::group) add_group(session_, GroupKind::gate, body, {});
   const double angle = actions_[Act::pick_flood]->data().toDouble();
-  edit_group(
-      session_, session_.item().index, tr("Flood %1 from a point"), [&](BoundaryGroup& group) {
-        const bool fresh = group.faces.empty() && group.face_names.empty() && group.floods.empty();
-        if (fresh) group.body = body;
-        if (group.body == body || group.body.empty())
-          group.floods.push_back({picked.point, angle > 0 ? angle : Flood{}.angle});
-      });
+  edit_group(session_, session_.item().index, Texts::tr("Flood %1 from a point"),
+             [&](BoundaryGroup& group) {
+               const bool fresh =
+                   group.faces.empty() && group.face_names.empty() && group.floods.empty();
+               if (fresh) group.body = body;
+               if (group.body == body || group.body.empty())
+                 group.floods.push_back({picked.point, angle > 0 ? angle : Flood{}.angle});
+             });
   actions_.leave_mode();
 }
 
 void PickTools::show_metric(const Picked& picked) {
   const auto state = session_.shown_state();
   if (!state || picked.element < 0 || state->metric.size() != state->mesh.points.size()) {
-    metric_text_ = tr("This mesh has no metric");
+    metric_text_ = Texts::tr("This mesh has no metric");
     metric_at_ = picked.point;
     ellipsoid_->VisibilityOff();
     return;
@@ -194,10 +198,9 @@ void PickTools::show_metric(const Picked& picked) {
   ellipsoid_->SetMapper(mapper);
   ellipsoid_->VisibilityOn();
   const Vec<3> h = sizes<3>(state->metric[n]);
-  metric_text_ =
-      tr("asked: %1 × %2 × %3 mm").arg(h[0], 0, 'g', 3).arg(h[1], 0, 'g', 3).arg(h[2], 0, 'g', 3);
+  metric_text_ = Texts::tr("asked: %1").arg(units::size(h, 3));
   if (n < state->thickness.size() && state->thickness[n] > 0)
-    metric_text_ += "\n" + tr("wall: %1 mm").arg(state->thickness[n], 0, 'g', 3);
+    metric_text_ += "\n" + Texts::tr("wall: %1").arg(units::length(state->thickness[n], 3));
 }
 
 void PickTools::mark(const Vec<3>& at, const QString& text) {
@@ -226,7 +229,7 @@ void PickTools::paint(QPainter& painter) const {
   for (const QPointF& p : at) paint_dot(painter, p, theme::warning);
   for (std::size_t k = 1; k < at.size(); ++k) {
     const Vec<3> d = measured_[k] - measured_[k - 1];
-    paint_tag(painter, (at[k - 1] + at[k]) / 2, tr("%1 mm").arg(d.norm(), 0, 'f', 3));
+    paint_tag(painter, (at[k - 1] + at[k]) / 2, units::length(d.norm(), 5));
   }
   if (at.size() == 3) {
     const Vec<3> a = measured_[0] - measured_[1];
@@ -259,27 +262,29 @@ QString PickTools::hint() const {
   const bool group = session_.item().kind == ItemKind::group;
   switch (actions_.mode()) {
     case Act::pick_faces:
-      return group ? tr("Click faces to add them to “%1” or to take them out. Esc ends.")
+      return group ? Texts::tr("Click faces to add them to “%1” or to take them out. Esc ends.")
                          .arg(QString::fromStdString(
                              session_.study()
                                  .groups[static_cast<std::size_t>(session_.item().index)]
                                  .name))
-                   : tr("Click the first face of a new group. Esc ends.");
+                   : Texts::tr("Click the first face of a new group. Esc ends.");
     case Act::pick_flood:
-      return tr("Click where the group is to begin. Esc ends.");
+      return Texts::tr("Click where the group is to begin. Esc ends.");
     case Act::correct_near:
-      return tr("Click the gate, or any place that needs a size of its own. Esc ends.");
+      return Texts::tr("Click the gate, or any place that needs a size of its own. Esc ends.");
     case Act::correct_face:
-      return tr("Click the face that is to have a size of its own. Esc ends.");
+      return Texts::tr("Click the face that is to have a size of its own. Esc ends.");
     case Act::measure:
-      return measured_.size() == 1   ? tr("Click the second place. Esc ends.")
-             : measured_.size() == 2 ? tr("A third place gives the angle. Esc ends.")
-                                     : tr("Click two places to see their distance. Esc ends.");
+      return measured_.size() == 1 ? Texts::tr("Click the second place. Esc ends.")
+             : measured_.size() == 2
+                 ? Texts::tr("A third place gives the angle. Esc ends.")
+                 : Texts::tr("Click two places to see their distance. Esc ends.");
     case Act::ellipsoid:
-      return session_.shown_state() ? tr("Click the mesh to see the sizes asked there. Esc ends.")
-                                    : tr("Sizes are known once there is a mesh. Esc ends.");
+      return session_.shown_state()
+                 ? Texts::tr("Click the mesh to see the sizes asked there. Esc ends.")
+                 : Texts::tr("Sizes are known once there is a mesh. Esc ends.");
     case Act::box_zoom:
-      return tr("Draw a rectangle around what is to come close. Esc ends.");
+      return Texts::tr("Draw a rectangle around what is to come close. Esc ends.");
     default:
       return {};
   }

@@ -14,6 +14,7 @@ namespace {
 
 /// 12500 as "12.5 k", 8.25e6 as "8.25 M".
 QString short_number(double value) {
+  if (std::abs(value) >= 1e9) return QString::number(value, 'g', 3);
   if (std::abs(value) >= 1e6) return QString("%1 M").arg(value / 1e6, 0, 'g', 3);
   if (std::abs(value) >= 1e4) return QString("%1 k").arg(value / 1e3, 0, 'g', 3);
   return QString::number(value, 'g', 4);
@@ -172,7 +173,7 @@ void Plot::paintEvent(QPaintEvent*) {
   const int n = count();
   for (const double v : n > 0 ? ticks() : std::vector<double>{}) {
     const double y = y_of(v);
-    painter.setPen(QPen(QColor(0xec, 0xef, 0xf3), 1));
+    painter.setPen(QPen(theme::border, 1));
     painter.drawLine(QPointF(a.left(), y), QPointF(a.right(), y));
     painter.setPen(theme::faint_text);
     painter.drawText(QRectF(0, y - 9, a.left() - 7, 18), Qt::AlignRight | Qt::AlignVCenter,
@@ -216,7 +217,7 @@ void Plot::paintEvent(QPaintEvent*) {
     painter.setPen(QPen(s.color, 2, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
     painter.setBrush(Qt::NoBrush);
     painter.drawPath(path);
-    painter.setBrush(Qt::white);
+    painter.setBrush(theme::panel);
     for (std::size_t k = 0; k < s.values.size(); ++k)
       if (std::isfinite(s.values[k]))
         painter.drawEllipse(QPointF(x_of(static_cast<int>(k)), y_of(s.values[k])), 3, 3);

@@ -1,22 +1,15 @@
 #include "ui/views/scene.h"
 
 #include <vtkActor.h>
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellPicker.h>
 #include <vtkCutter.h>
-#include <vtkDataSetSurfaceFilter.h>
-#include <vtkExtractGeometry.h>
-#include <vtkFloatArray.h>
-#include <vtkImplicitBoolean.h>
 #include <vtkIntArray.h>
-#include <vtkLookupTable.h>
 #include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
-#include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
@@ -28,15 +21,10 @@
 #include "ui/views/flow_actors.h"
 #include "ui/views/legends.h"
 #include "ui/views/mesh_data.h"
+#include "ui/views/mesh_skin.h"
 #include "ui/views/scene_actors.h"
 
 namespace lamella::ui {
-namespace {
-
-constexpr const char* element_array = "element";
-constexpr const char* node_array = "node";
-
-}  // namespace
 
 struct Scene::Impl {
   vtkRenderer& renderer;
@@ -46,17 +34,13 @@ struct Scene::Impl {
   double mesh_edge = 0;  // typical of what is drawn, mm; 0: unknown
   double pixel = 0;      // mm
   std::shared_ptr<const MeshState> state;
-  // Boundary faces of the mesh, each sorted, with their numbers; sorted.
-  std::vector<std::pair<std::array<NodeId, 3>, int>> outer;
-  // Faces towards bodies that are hidden, as `outer`; made when first needed.
-  std::optional<std::vector<std::array<NodeId, 3>>> bared;
   std::vector<std::vector<int>> facet_group;  // [part][facet of its surface]
   std::vector<std::vector<int>> face_group;   // [part][CAD face], -1: not all of it
   std::vector<QColor> group_colors;
   std::optional<std::pair<double, double>> quality_range;
   std::vector<int> part_of_body;
-  vtkSmartPointer<vtkUnstructuredGrid> grid;
-  vtkSmartPointer<vtkPolyData> skin;  // of the whole grid, made when first needed
+  MeshSkin skins;
+  vtkSmartPointer<vtkPolyData> skin;  // without cuts, made when first needed
   vtkNew<vtkActor> mesh_actor;
   vtkNew<vtkPolyDataMapper> mesh_mapper;
   vtkNew<vtkActor> mesh_lines;  // features, where there is no part to take them from
@@ -75,6 +59,7 @@ struct Scene::Impl {
   bool features = true;
   std::size_t shown = 0;
   Legend legend;
+  Legend wall_legend;  // of the parts
   std::array<double, 6> bounds{1, -1, 1, -1, 1, -1};
 
   explicit Impl(vtkRenderer& r) : renderer(r), flow(r) {
@@ -97,7 +82,9 @@ struct Scene::Impl {
 
   bool has(ColorBy field) const {
     if (field == ColorBy::body) return true;
-    if (!state) return false;
+    if (!state)
+      return field == ColorBy::thickness &&
+             std::any_of(parts.begin(), parts.end(), [](auto& p) { return p.wall_map != nullptr; });
     return has_field(*state, field) && (field != ColorBy::filling || filled_region() >= 0);
   }
 
@@ -176,64 +163,14 @@ struct Scene::Impl {
     }
   }
 
-  /// The elements of visible bodies as a grid that remembers their numbers.
-  void build_grid() {
-    grid = nullptr;
-    if (!state) return;
-    const SimplexMesh<3>& mesh = state->mesh;
-    vtkNew<vtkTypeInt64Array> corners;
-    vtkNew<vtkIntArray> element;
-    element->SetName(element_array);
-    std::vector<char> body_visible(mesh.bodies.size());
-    for (std::size_t b = 0; b < mesh.bodies.size(); ++b)
-      body_visible[b] = part_visible(part_of_body[b]);
-    corners->Allocate(static_cast<vtkIdType>(4 * mesh.elements.size()));
-    for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
-      if (!mesh.element_body.empty() &&
-          !body_visible[static_cast<std::size_t>(mesh.element_body[e])])
-        continue;
-      if (quality_range && has(ColorBy::quality) &&
-          !(state->quality[e] >= quality_range->first &&
-            state->quality[e] <= quality_range->second))
-        continue;
-      for (const NodeId node : mesh.elements[e]) corners->InsertNextValue(node);
-      element->InsertNextValue(static_cast<int>(e));
-    }
-    vtkNew<vtkCellArray> cells;
-    cells->SetData(4, corners);
-    vtkNew<vtkIntArray> node;
-    node->SetName(node_array);
-    node->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points.size()));
-    for (vtkIdType k = 0; k < node->GetNumberOfTuples(); ++k)
-      node->SetValue(k, static_cast<int>(k));
-    grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-    grid->SetPoints(make_points(mesh.points));
-    grid->SetCells(VTK_TETRA, cells);
-    grid->GetCellData()->AddArray(element);
-    grid->GetPointData()->AddArray(node);
-    add_fields(*state, *element, *grid);
+  /// The elements of visible bodies.
+  void choose_elements() {
     skin = nullptr;
-    bared.reset();
-  }
-
-  /// Whether the body of a face of the mesh ends there, at one that is hidden.
-  bool is_bared(std::array<NodeId, 3> face) {
-    if (!bared) {
-      if (!skin) skin = skin_of(grid);
-      bared = sorted_faces(*skin,
-                           *vtkIntArray::SafeDownCast(skin->GetPointData()->GetArray(node_array)));
-    }
-    std::sort(face.begin(), face.end());
-    return std::binary_search(bared->begin(), bared->end(), face);
-  }
-
-  static vtkSmartPointer<vtkPolyData> skin_of(vtkUnstructuredGrid* of) {
-    vtkNew<vtkDataSetSurfaceFilter> filter;
-    filter->SetInputData(of);
-    filter->Update();
-    auto data = vtkSmartPointer<vtkPolyData>::New();
-    data->ShallowCopy(filter->GetOutput());
-    return data;
+    if (!state) return;
+    std::vector<bool> body_visible;
+    for (std::size_t b = 0; b < state->mesh.bodies.size(); ++b)
+      body_visible.push_back(part_visible(part_of_body[b]));
+    skins.choose(body_visible, has(ColorBy::quality) ? quality_range : std::nullopt);
   }
 
   void update_mesh() {
@@ -241,28 +178,22 @@ struct Scene::Impl {
     mesh_mapper->RemoveAllClippingPlanes();
     for (const Cut& cut : cuts) cut.mapper->RemoveAllInputs();
     update_visibility();
-    if (!grid) {
+    if (!skins) {
       mesh_mapper->RemoveAllInputs();
       draw_flow();
       recolor();
       return;
     }
     if (!cuts.empty() && crinkle) {
-      vtkNew<vtkImplicitBoolean> kept;
-      kept->SetOperationTypeToIntersection();
-      for (const Cut& cut : cuts) kept->AddFunction(cut.keep);
-      vtkNew<vtkExtractGeometry> extract;
-      extract->SetInputData(grid);
-      extract->SetImplicitFunction(kept);
-      extract->ExtractInsideOn();
-      extract->ExtractBoundaryCellsOn();
-      extract->Update();
-      shown = static_cast<std::size_t>(extract->GetOutput()->GetNumberOfCells());
-      mesh_mapper->SetInputData(skin_of(extract->GetOutput()));
+      std::vector<std::pair<Vec<3>, Vec<3>>> planes;
+      for (const Cut& cut : cuts)
+        planes.emplace_back(Vec<3>(cut.keep->GetOrigin()), Vec<3>(cut.keep->GetNormal()));
+      mesh_mapper->SetInputData(skins.skin(planes));
+      shown = skins.elements();
     } else {
-      if (!skin) skin = skin_of(grid);
+      if (!skin) skin = skins.skin({});
       mesh_mapper->SetInputData(skin);
-      shown = static_cast<std::size_t>(grid->GetNumberOfCells());
+      shown = skins.elements();
       if (!cuts.empty()) cut_through();
     }
     mesh_edge = typical_edge(*mesh_mapper->GetInput());
@@ -273,8 +204,9 @@ struct Scene::Impl {
 
   /// Arrows and lines within the mesh, which lets them be seen.
   void draw_flow() {
-    const bool on = grid && has(ColorBy::speed);
-    flow.draw(on ? grid.Get() : nullptr, on ? state.get() : nullptr, sections, flow_look, color_by);
+    const bool on = skins && flow_look.any() && has(ColorBy::speed);
+    flow.draw(on ? skins.grid() : nullptr, on ? state.get() : nullptr, sections, flow_look,
+              color_by);
     mesh_actor->GetProperty()->SetOpacity(sees_lines() ? 0.3 : 1);
     mesh_actor->GetProperty()->SetEdgeVisibility(edges && !sees_lines());
   }
@@ -286,7 +218,7 @@ struct Scene::Impl {
     for (Cut& cut : cuts) {
       mesh_mapper->AddClippingPlane(cut.clip);
       vtkNew<vtkCutter> cutter;
-      cutter->SetInputData(grid);
+      cutter->SetInputData(skins.grid());
       cutter->SetCutFunction(cut.keep);
       cutter->GenerateTrianglesOff();
       cutter->Update();
@@ -318,8 +250,9 @@ struct Scene::Impl {
     legend = {};
     if (color_by != ColorBy::body && !has(color_by) && (state || !parts.empty()))
       legend = missing_legend(color_by, state != nullptr);
+    if (!state && color_by == ColorBy::thickness && has(color_by)) legend = wall_legend;
     color_parts();
-    if (!grid) return;
+    if (!skins) return;
     // Shading gives a body its shape, but the colors of values must be those of the legend.
     const bool values = color_by != ColorBy::body && has(color_by);
     mesh_actor->GetProperty()->SetAmbient(values ? 0.74 : 0.42);
@@ -336,13 +269,6 @@ struct Scene::Impl {
     }
   }
 
-  /// Number of the boundary facet with these nodes; -1: it is inside.
-  int facet_with(std::array<NodeId, 3> face) const {
-    std::sort(face.begin(), face.end());
-    const auto it = std::lower_bound(outer.begin(), outer.end(), std::pair(face, -1));
-    return it != outer.end() && it->first == face ? it->second : -1;
-  }
-
   /// Group of a facet of the mesh: that of its CAD face, if all of it is in one; -1: none.
   int group_of(int part, std::size_t facet) const {
     const SimplexMesh<3>& mesh = state->mesh;
@@ -353,33 +279,15 @@ struct Scene::Impl {
     return face_group[p][face];
   }
 
-  /// Parts in their colors, facets of groups in those of the groups.
+  /// Parts in their colors, facets of groups in those of the groups, or by wall thickness.
   void color_parts() {
+    const bool by_wall = !state && color_by == ColorBy::thickness && has(color_by);
     for (std::size_t p = 0; p < parts.size(); ++p) {
-      vtkPolyData* data =
-          vtkPolyDataMapper::SafeDownCast(parts[p].surface->GetMapper())->GetInput();
-      vtkMapper* mapper = parts[p].surface->GetMapper();
-      const bool grouped =
-          p < facet_group.size() &&
-          std::any_of(facet_group[p].begin(), facet_group[p].end(), [](int g) { return g >= 0; });
-      mapper->SetScalarVisibility(grouped);
-      if (!grouped || state) continue;
-      vtkNew<vtkUnsignedCharArray> rgb;
-      rgb->SetName("group color");
-      rgb->SetNumberOfComponents(3);
-      rgb->SetNumberOfTuples(data->GetNumberOfCells());
-      for (vtkIdType f = 0; f < data->GetNumberOfCells(); ++f) {
-        const int g = facet_group[p][static_cast<std::size_t>(f)];
-        const QColor& c = g < 0 ? parts[p].color : group_colors[static_cast<std::size_t>(g)];
-        const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
-                                        static_cast<unsigned char>(c.green()),
-                                        static_cast<unsigned char>(c.blue())};
-        rgb->SetTypedTuple(f, bytes);
-      }
-      data->GetCellData()->SetScalars(rgb);
-      mapper->SetScalarModeToUseCellData();
-      mapper->SetColorModeToDirectScalars();
-      data->Modified();
+      if (by_wall)
+        show_walls(parts[p], legend);
+      else
+        show_groups(parts[p], p < facet_group.size() ? facet_group[p] : std::vector<int>{},
+                    group_colors);
     }
   }
 
@@ -396,16 +304,7 @@ struct Scene::Impl {
       data.Modified();
       return;
     }
-    vtkNew<vtkLookupTable> table;
-    constexpr int entries = 256;
-    table->SetNumberOfTableValues(entries);
-    for (int k = 0; k < entries; ++k) {
-      const QColor c = legend.map.at((k + 0.5) / entries);
-      table->SetTableValue(k, c.redF(), c.greenF(), c.blueF(), 1);
-    }
-    table->SetNanColor(theme::missing.redF(), theme::missing.greenF(), theme::missing.blueF(), 1);
-    table->SetRange(legend.low, legend.high);
-    mapper.SetLookupTable(table);
+    mapper.SetLookupTable(lookup_table(legend));
     mapper.UseLookupTableScalarRangeOn();
     mapper.SetColorModeToMapScalars();
     if (color_by == ColorBy::filling) {
@@ -427,36 +326,26 @@ struct Scene::Impl {
 
   void color_by_body(vtkPolyData& data, bool inside) {
     auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
-    auto* node = vtkIntArray::SafeDownCast(data.GetPointData()->GetArray(node_array));
+    auto* facet = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(facet_array));
+    auto* opened = vtkUnsignedCharArray::SafeDownCast(data.GetCellData()->GetArray(opened_array));
     const vtkIdType faces = data.GetNumberOfCells();
     vtkNew<vtkUnsignedCharArray> rgb;
     rgb->SetName("body color");
     rgb->SetNumberOfComponents(3);
     rgb->SetNumberOfTuples(faces);
-    vtkNew<vtkIdList> corner;
-    const bool opened = (!cuts.empty() && crinkle) || quality_range;
-    const bool some_hidden =
-        !quality_range && std::find(visible.begin(), visible.end(), false) != visible.end();
     for (vtkIdType f = 0; f < faces; ++f) {
       const int e = element->GetValue(f);
       const int body =
           state->mesh.element_body.empty() ? 0 : state->mesh.element_body[std::size_t(e)];
       QColor c = color_of_body(body);
-      bool made_by_section = inside;
-      if (!inside && (opened || !group_colors.empty())) {
-        data.GetCellPoints(f, corner);
-        const std::array<NodeId, 3> nodes{node->GetValue(corner->GetId(0)),
-                                          node->GetValue(corner->GetId(1)),
-                                          node->GetValue(corner->GetId(2))};
-        const int facet = facet_with(nodes);
-        made_by_section = facet < 0 && !(some_hidden && is_bared(nodes));
-        const int group = facet < 0 ? -1
-                                    : group_of(part_of_body[static_cast<std::size_t>(body)],
-                                               static_cast<std::size_t>(facet));
-        if (group >= 0) c = group_colors[static_cast<std::size_t>(group)];
-      }
+      const int number = inside ? -1 : facet->GetValue(f);
+      const int group = number < 0 ? -1
+                                   : group_of(part_of_body[static_cast<std::size_t>(body)],
+                                              static_cast<std::size_t>(number));
+      if (group >= 0) c = group_colors[static_cast<std::size_t>(group)];
       // Bodies side by side in a cut must differ.
-      if (made_by_section) c = inside_color(c, state->mesh.bodies.size() > 1 ? 2 : 1);
+      if (inside || opened->GetValue(f) != 0)
+        c = inside_color(c, state->mesh.bodies.size() > 1 ? 2 : 1);
       const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
                                       static_cast<unsigned char>(c.green()),
                                       static_cast<unsigned char>(c.blue())};
@@ -485,36 +374,40 @@ void Scene::set_parts(const std::vector<Part>& parts, const std::vector<QColor>&
   impl_->facet_group.clear();
   impl_->face_group.clear();
   impl_->match_bodies();
-  impl_->build_grid();
+  impl_->choose_elements();
   impl_->update_bounds();
   clip_parts();
   impl_->update_mesh();
 }
 
-void Scene::set_mesh(std::shared_ptr<const MeshState> state) {
+void Scene::set_mesh(std::shared_ptr<const MeshState> state,
+                     std::shared_ptr<const MeshFaces> faces) {
   impl_->state = std::move(state);
-  impl_->outer.clear();
+  impl_->skins.set(impl_->state, std::move(faces));
   impl_->match_bodies();
-  if (impl_->state) {
-    const SimplexMesh<3>& mesh = impl_->state->mesh;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-      auto face = mesh.facets[f];
-      std::sort(face.begin(), face.end());
-      impl_->outer.emplace_back(face, static_cast<int>(f));
-    }
-    std::sort(impl_->outer.begin(), impl_->outer.end());
-    if (impl_->parts.empty()) impl_->mesh_lines_mapper->SetInputData(feature_data(mesh));
-  }
-  impl_->build_grid();
+  if (impl_->state && impl_->parts.empty())
+    impl_->mesh_lines_mapper->SetInputData(feature_data(impl_->state->mesh));
+  impl_->choose_elements();
   impl_->update_bounds();
   impl_->update_mesh();
   impl_->update_visibility();
 }
 
+void Scene::set_walls(const std::vector<std::shared_ptr<const ThicknessMap>>& maps) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < impl_->parts.size(); ++k) {
+    const auto map = k < maps.size() ? maps[k] : nullptr;
+    ui::set_walls(impl_->parts[k], map);
+    if (map) all.insert(all.end(), map->thickness.begin(), map->thickness.end());
+  }
+  impl_->wall_legend = thickness_legend(std::move(all));
+  impl_->recolor();
+}
+
 void Scene::set_visible(const std::vector<bool>& visible) {
   if (visible == impl_->visible) return;
   impl_->visible = visible;
-  impl_->build_grid();
+  impl_->choose_elements();
   impl_->update_mesh();
   impl_->update_visibility();
 }
@@ -540,7 +433,8 @@ std::optional<Picked> Scene::pick(double x, double y) const {
   for (std::size_t k = 0; k < impl_->parts.size(); ++k) {
     if (picker->GetActor() != impl_->parts[k].surface) continue;
     picked.part = static_cast<int>(k);
-    picked.face = impl_->parts[k].facet_face[static_cast<std::size_t>(picker->GetCellId())];
+    const PartActors& part = impl_->parts[k];
+    picked.face = part.facet_face[facet_of(part, picker->GetCellId())];
     return picked;
   }
   vtkDataSet* data = picker->GetDataSet();
@@ -554,12 +448,8 @@ std::optional<Picked> Scene::pick(double x, double y) const {
                                         ? 0
                                         : static_cast<std::size_t>(mesh.element_body[e])];
   if (picker->GetActor() == impl_->mesh_actor) {
-    auto* node = vtkIntArray::SafeDownCast(data->GetPointData()->GetArray(node_array));
-    vtkNew<vtkIdList> corner;
-    data->GetCellPoints(picker->GetCellId(), corner);
-    const int facet =
-        impl_->facet_with({node->GetValue(corner->GetId(0)), node->GetValue(corner->GetId(1)),
-                           node->GetValue(corner->GetId(2))});
+    const int facet = vtkIntArray::SafeDownCast(data->GetCellData()->GetArray(facet_array))
+                          ->GetValue(picker->GetCellId());
     if (facet >= 0 && static_cast<std::size_t>(facet) < mesh.facet_face.size())
       picked.face = mesh.facet_face[static_cast<std::size_t>(facet)];
   }
@@ -600,7 +490,7 @@ void Scene::set_groups(std::vector<std::vector<int>> facet_group, std::vector<QC
 void Scene::set_quality_range(const std::optional<std::pair<double, double>>& range) {
   if (range == impl_->quality_range) return;
   impl_->quality_range = range;
-  impl_->build_grid();
+  impl_->choose_elements();
   impl_->update_mesh();
 }
 

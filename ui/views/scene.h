@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "core/geometry/surface.h"
+#include "core/natural/thickness_map.h"
 #include "core/study/run.h"
+#include "ui/session/mesh_faces.h"
 #include "ui/views/color_map.h"
 #include "ui/views/section.h"
 
@@ -34,8 +36,13 @@ class Scene {
 
   /// `colors` has one entry a part.
   void set_parts(const std::vector<Part>& parts, const std::vector<QColor>& colors);
-  /// Null shows the parts. Bodies are matched to parts by name.
-  void set_mesh(std::shared_ptr<const MeshState> state);
+  /// Null shows the parts. Bodies are matched to parts by name. Without `faces` they are made here,
+  /// which takes a while.
+  void set_mesh(std::shared_ptr<const MeshState> state,
+                std::shared_ptr<const MeshFaces> faces = nullptr);
+  /// Wall thickness on the surfaces of the parts, one a part or null, for ColorBy::thickness while
+  /// no mesh is shown.
+  void set_walls(const std::vector<std::shared_ptr<const ThicknessMap>>& maps);
   void set_visible(const std::vector<bool>& visible);
   /// Parts outlined in the accent color.
   void set_selected(const std::vector<int>& parts);

@@ -11,7 +11,9 @@
 #include <cmath>
 
 #include "ui/actions/actions.h"
+#include "ui/panels/length_box.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 namespace {
@@ -102,6 +104,7 @@ ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(a
   row->addWidget(views);
   row->addWidget(button(actions_[Act::fit]));
   row->addWidget(button(actions_[Act::perspective]));
+  row->addWidget(button(actions_[Act::compare]));
   section_bar_ = make_section_bar();
   rows->addWidget(section_bar_);
   section_bar_->hide();
@@ -131,12 +134,9 @@ QWidget* ViewBar::make_section_bar() {
   tools->addSpacing(4);
   tools->addWidget(slider_, 1);
   tools->addSpacing(4);
-  position_ = new QDoubleSpinBox;
+  position_ = new CoordinateBox;
   position_->setAccessibleName(tr("Position of the cut"));
-  position_->setDecimals(2);
-  position_->setSuffix(tr(" mm"));
-  position_->setRange(-1e6, 1e6);
-  position_->setKeyboardTracking(false);
+  position_->setSuffix(" " + units::name());
   position_->setMinimumWidth(100);
   tools->addWidget(position_);
   for (const Act act : {Act::flip, Act::add_cut, Act::crinkle})

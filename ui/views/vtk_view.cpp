@@ -8,6 +8,7 @@
 #include <vtkOpenGLState.h>
 #include <vtkRenderer.h>
 
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QOpenGLContext>
 #include <QOpenGLExtraFunctions>
@@ -65,6 +66,7 @@ bool VtkView::supported() {
 VtkView::VtkView(QWidget* parent) : QOpenGLWidget(parent), vtk_(std::make_unique<Vtk>()) {
   setFormat(format());
   setMouseTracking(true);
+  setAccessibleName(tr("Model"));
   setFocusPolicy(Qt::StrongFocus);
   setMinimumSize(200, 150);
   vtk_->window->SetReadyForRendering(false);
@@ -324,6 +326,33 @@ void VtkView::mouseMoveEvent(QMouseEvent* event) {
 void VtkView::mouseReleaseEvent(QMouseEvent* event) {
   drag_ = Qt::NoButton;
   if (filter_) filter_(event);
+}
+
+void VtkView::keyPressEvent(QKeyEvent* event) {
+  constexpr double step = 25;  // pixels of a drag
+  const QPointF middle(width() / 2.0, height() / 2.0);
+  const auto move = [&](double x, double y) {
+    if (event->modifiers() & Qt::ShiftModifier)
+      pan(step * QPointF(x, y));
+    else
+      rotate(step * QPointF(x, y));
+  };
+  switch (event->key()) {
+    case Qt::Key_Left:
+      return move(-1, 0);
+    case Qt::Key_Right:
+      return move(1, 0);
+    case Qt::Key_Up:
+      return move(0, -1);
+    case Qt::Key_Down:
+      return move(0, 1);
+    case Qt::Key_Plus:
+      return zoom(1.2, middle);
+    case Qt::Key_Minus:
+      return zoom(1 / 1.2, middle);
+    default:
+      QOpenGLWidget::keyPressEvent(event);
+  }
 }
 
 void VtkView::wheelEvent(QWheelEvent* event) {

@@ -16,7 +16,8 @@ class vtkRenderer;
 namespace lamella::ui {
 
 /// A Qt widget that shows one VTK renderer, with the camera under the mouse: left turns, middle or
-/// Shift+left shifts, the wheel and right zoom towards the cursor.
+/// Shift+left shifts, the wheel and right zoom towards the cursor. Arrow keys turn, with Shift they
+/// shift, + and - zoom.
 ///
 /// VTK draws into its own framebuffer, which is copied into the widget's; the widget and VTK never
 /// share OpenGL state. All positions are in logical pixels from the top left.
@@ -67,6 +68,7 @@ class VtkView : public QOpenGLWidget {
   void mouseMoveEvent(QMouseEvent* event) override;
   void mouseReleaseEvent(QMouseEvent* event) override;
   void wheelEvent(QWheelEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
 
  private:
   void release_gl();

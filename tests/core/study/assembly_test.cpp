@@ -108,6 +108,22 @@ TEST(Assembly, TellsOverlapsAndGivesThemToTheFirst) {
   EXPECT_LT(outcome->bodies[1].cad_volume, 4 * std::numbers::pi / 3 * 0.064);
 }
 
+TEST(Assembly, AnInsertKeepsWhatItSharesWithAMold) {
+  Study study;
+  study.zones = {{"a", ZoneBall{{1, 1, 1}, 0.5}}, {"b", ZoneBall{{1.6, 1, 1}, 0.4}}};
+  study.domain = StudyDomain{ZoneBox{{0, 0, 0}, {2.4, 2, 2}}};
+  study.bodies = {{"a"}, {"b"}};
+  study.bodies[0].role = BodyRole::mold;
+  study.bodies[1].role = BodyRole::insert;
+  study.options.interfaces = Interfaces::fuzzy;
+  study.options.iterations = 1;
+  const Result<Outcome> outcome = mesh(study);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  EXPECT_EQ(outcome->bodies[0].name, "b");
+  EXPECT_NEAR(outcome->bodies[0].cad_volume, 4 * std::numbers::pi / 3 * 0.064, 1e-3);
+  EXPECT_LT(outcome->bodies[1].cad_volume, 4 * std::numbers::pi / 3 * 0.125);
+}
+
 TEST(Assembly, RefusesWhatCannotBe) {
   Study study = halves(Interfaces::exact);
   study.domain = StudyDomain{DomainBody{"nobody"}};

@@ -54,6 +54,27 @@ TEST(StudyDomain, HullHoldsPartsAndZonesThatEnd) {
   EXPECT_FALSE(domain_hull(study, parts));
 }
 
+TEST(StudyDomain, InsertsComeBeforeCavitiesAndTheseBeforeTheMold) {
+  const std::vector<Part> parts{box_part("mold", {0, 0, 0}, {1, 1, 1}),
+                                box_part("part", {0, 0, 0}, {1, 1, 1}),
+                                box_part("plain", {0, 0, 0}, {1, 1, 1})};
+  Study study;
+  study.zones = {{"pin", ZoneBall{{0, 0, 0}, 1}}, {"runner", ZoneBall{{0, 0, 0}, 1}}};
+  const auto order = [&] {
+    std::vector<std::string> names;
+    for (const RankedBody& body : by_rank(study, parts))
+      names.push_back(body.part ? body.part->name : body.zone->name);
+    return names;
+  };
+  EXPECT_EQ(order(), (std::vector<std::string>{"mold", "part", "plain", "pin", "runner"}));
+  arrange_bodies(study, parts);
+  study.bodies[0].role = BodyRole::mold;
+  study.bodies[1].role = BodyRole::cavity;
+  study.bodies[3].role = BodyRole::insert;
+  study.bodies[4].role = BodyRole::channel;
+  EXPECT_EQ(order(), (std::vector<std::string>{"pin", "part", "plain", "runner", "mold"}));
+}
+
 TEST(StudyDomain, OverlapsAreOfPartsAndZonesButNotOfTheDomain) {
   const std::vector<Part> parts{box_part("a", {0, 0, 0}, {2, 2, 2}),
                                 box_part("mold", {-5, -5, -5}, {5, 5, 5})};

@@ -33,7 +33,8 @@ Study full_study() {
 
 TEST(StudyFile, ReadsBackWhatItWrote) {
   const test::TemporaryFolder folder;
-  const Study study = full_study();
+  Study study = full_study();
+  study.bodies[0].role = BodyRole::insert;
   ASSERT_TRUE(write_study(study, folder / "s.json").ok());
   const Result<Study> back = read_study(folder / "s.json");
   ASSERT_TRUE(back.ok()) << back.error().message;
@@ -69,6 +70,8 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(back->bodies[0].h_min, 0.01);
   EXPECT_EQ(back->bodies[0].h_max, 3.5);
   EXPECT_FALSE(back->bodies[0].visible);
+  EXPECT_EQ(back->bodies[0].role, BodyRole::insert);
+  EXPECT_EQ(back->bodies[1].role, BodyRole::none);
   EXPECT_FALSE(back->bodies[1].h_min.has_value());
   EXPECT_FALSE(back->bodies[0].layers2.has_value());
   EXPECT_EQ(back->bodies[1].layers2, 5);
@@ -299,6 +302,7 @@ TEST(StudyFile, EveryMistakeIsNamed) {
       {R"({"schema": 1, "bodies": [{"name": "a", "layers": 0}]})", "bodies[0].layers"},
       {R"({"schema": 1, "bodies": [{"name": "a", "layers": 2.5}]})", "bodies[0].layers"},
       {R"({"schema": 1, "bodies": [{"name": "a", "h_min": -1}]})", "bodies[0].h_min"},
+      {R"({"schema": 1, "bodies": [{"name": "a", "role": "screw"}]})", "bodies[0].role"},
       {R"({"schema": 1, "options": {"iterations": "six"}})", "options.iterations"},
       {R"({"schema": 1, "options": {"detector": "radar"}})", "options.detector"},
       {R"({"schema": 1, "options": {"tolerance": 1}})", "options.tolerance"},

@@ -1,0 +1,168 @@
+#include <QComboBox>
+#include <QLineEdit>
+#include <QSlider>
+
+#include "core/study/domain.h"
+#include "tests/ui/window_fixture.h"
+#include "ui/panels/form.h"
+#include "ui/session/wall_map.h"
+#include "ui/views/compare_view.h"
+
+namespace lamella::ui {
+namespace {
+
+using LookTest = WindowFixture;
+
+TEST_F(LookTest, WallsAreColoredByThicknessBeforeThereIsAMesh) {
+  open_part("t_junction");
+  const QImage plain = window_.view().picture();
+  window_.view().set_color_by(ColorBy::thickness);
+  const WallMap& walls = window_.view().walls();
+  EXPECT_FALSE(window_.view().scene()->has(ColorBy::thickness));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.maps().empty(); }, 30000));
+  QTest::qWait(50);
+  ASSERT_TRUE(window_.view().scene()->has(ColorBy::thickness));
+  const Legend legend = window_.view().scene()->legend();
+  EXPECT_TRUE(legend.is_length);
+  EXPECT_GT(legend.low, 0);
+  EXPECT_GT(legend.high, legend.low);
+  EXPECT_GT(difference(plain, window_.view().picture()), 0.03);
+  picture("walls");
+  // A click still finds the CAD face below it.
+  const auto picked = window_.view().scene()->pick(view()->width() / 2.0, view()->height() / 2.0);
+  ASSERT_TRUE(picked.has_value());
+  EXPECT_TRUE(picked->face.has_value());
+  // The mesh brings its own, and coloring by body takes it away.
+  run();
+  EXPECT_TRUE(walls.status().isEmpty());
+  window_.view().set_color_by(ColorBy::body);
+  EXPECT_TRUE(window_.view().scene()->legend().title.isEmpty());
+}
+
+TEST_F(LookTest, MeasuringWallsIsStoppedByEscapeAndByARun) {
+  open_part("ribbed_tray");
+  window_.view().set_color_by(ColorBy::thickness);
+  const WallMap& walls = window_.view().walls();
+  ASSERT_TRUE(walls.busy());
+  QTest::keyClick(&window_.view(), Qt::Key_Escape);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.busy(); }, 10000));
+  EXPECT_TRUE(walls.maps().empty());
+  EXPECT_FALSE(walls.status().isEmpty());
+  window_.view().set_color_by(ColorBy::body);
+  window_.view().set_color_by(ColorBy::thickness);
+  ASSERT_TRUE(walls.busy());
+  action(Act::run)->trigger();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.busy(); }, 10000));
+  ASSERT_TRUE(wait_idle());
+  EXPECT_TRUE(walls.maps().empty());
+}
+
+TEST_F(LookTest, TwoViewsShareCameraAndCutsAndShowDifferentIterations) {
+  open_part("plate");
+  EXPECT_FALSE(action(Act::compare)->isEnabled());
+  run();
+  ASSERT_TRUE(action(Act::compare)->isEnabled());
+  action(Act::compare)->setChecked(true);
+  CompareView* other = window_.view().compared();
+  ASSERT_NE(other, nullptr);
+  QTest::qWait(100);
+  EXPECT_EQ(other->iteration(), session().shown() - 1);
+  const auto elements = [&](int k) {
+    return session().iterations()[std::size_t(k)].state->mesh.element_count();
+  };
+  EXPECT_EQ(other->scene().shown_elements(), elements(other->iteration()));
+  find<QComboBox>("compared")->setCurrentIndex(1);
+  EXPECT_EQ(other->iteration(), 0);
+  EXPECT_EQ(other->scene().shown_elements(), elements(0));
+  // The slider moves the right one only.
+  find<QSlider>("iteration_slider")->setValue(3);
+  EXPECT_EQ(other->iteration(), 0);
+  EXPECT_EQ(window_.view().scene()->shown_elements(), elements(3));
+
+  const QImage before = other->vtk_view()->grab().toImage();
+  action(Act::view_top)->trigger();
+  QTest::qWait(100);
+  EXPECT_GT(difference(before, other->vtk_view()->grab().toImage()), 0.01);
+  const Vec<3> corner(40, 30, 2);
+  const auto from_middle = [&](VtkView* v) { return v->project(corner).y() - v->height() / 2.0; };
+  EXPECT_NEAR(from_middle(other->vtk_view()) / other->vtk_view()->height(),
+              from_middle(view()) / view()->height(), 1e-6);
+  action(Act::section)->setChecked(true);
+  QTest::qWait(100);
+  EXPECT_LT(other->scene().shown_elements(), elements(0));
+  EXPECT_LT(window_.view().scene()->shown_elements(), elements(3));
+  action(Act::view_iso)->trigger();
+  window_.view().set_color_by(ColorBy::quality);
+  QTest::qWait(100);
+  EXPECT_EQ(other->scene().legend().title, window_.view().scene()->legend().title);
+  picture("compare");
+  action(Act::compare)->setChecked(false);
+  EXPECT_EQ(window_.view().compared(), nullptr);
+}
+
+TEST_F(LookTest, BodiesByFormulaAreMadeEditedRenamedAndUndone) {
+  action(Act::zone_ball)->trigger();
+  ASSERT_EQ(study().zones.size(), 1u);
+  ASSERT_TRUE(study().domain.has_value());
+  EXPECT_TRUE(session().can_run());
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !session().shapes()[0].surface.points.empty(); }));
+  EXPECT_TRUE(window_.view().isVisible());
+  find<LengthBox>("zone_radius")->setValue(3);
+  const auto ball = [&] { return std::get<ZoneBall>(study().zones[0].shape); };
+  EXPECT_EQ(ball().radius, 3);
+  find<PointBox>("zone_center")->set_point({1, 2, 3});
+  Q_EMIT find<PointBox>("zone_center")->edited();
+  EXPECT_EQ(ball().center, Vec<3>(1, 2, 3));
+
+  auto* name = find<QLineEdit>("zone_name");
+  name->setText("grain");
+  Q_EMIT name->editingFinished();
+  EXPECT_EQ(study().zones[0].name, "grain");
+  EXPECT_EQ(session().body(0).name, "grain");
+
+  action(Act::zone_box)->trigger();
+  ASSERT_EQ(study().zones.size(), 2u);
+  EXPECT_EQ(session().item().index, 1);
+  name->setText("grain");  // taken
+  Q_EMIT name->editingFinished();
+  EXPECT_EQ(study().zones[1].name, "box");
+  EXPECT_EQ(name->text(), "box");
+  action(Act::zone_cylinder)->trigger();
+  action(Act::zone_half_space)->trigger();
+  ASSERT_EQ(study().zones.size(), 4u);
+  // What is around the bodies comes last.
+  EXPECT_EQ(study().bodies.size(), 5u);
+  QTest::qWait(300);
+  picture("zones");
+  session().select(0);
+  QTest::qWait(50);
+  picture("zone");
+  for (int k = 0; k < 20 && !study().zones.empty(); ++k) session().undo_stack()->undo();
+  EXPECT_TRUE(session().empty());
+}
+
+TEST_F(LookTest, ABodyByFormulaIsMovedByItsKnob) {
+  open_part("plate");
+  action(Act::zone_ball)->trigger();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !session().shapes()[1].surface.points.empty(); }));
+  QTest::qWait(100);
+  const auto center = [&] { return std::get<ZoneBall>(study().zones[0].shape).center; };
+  const Vec<3> before = center();
+  const QPoint knob = view()->project(before).toPoint();
+  const int steps = session().undo_stack()->count();
+  QTest::mousePress(view(), Qt::LeftButton, {}, knob);
+  for (int k = 1; k <= 4; ++k) {
+    const QPointF to = knob + QPoint(10 * k, 0);
+    QMouseEvent move(QEvent::MouseMove, to, view()->mapToGlobal(to), Qt::NoButton, Qt::LeftButton,
+                     {});
+    QCoreApplication::sendEvent(view(), &move);
+  }
+  QTest::mouseRelease(view(), Qt::LeftButton, {}, knob + QPoint(40, 0));
+  EXPECT_GT((center() - before).norm(), 0.1);
+  EXPECT_EQ(session().undo_stack()->count(), steps + 1);
+  session().undo_stack()->undo();
+  EXPECT_EQ(center(), before);
+}
+
+}  // namespace
+}  // namespace lamella::ui

@@ -1,0 +1,151 @@
+#include "ui/views/mesh_skin.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkIntArray.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkTypeInt32Array.h>
+#include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
+
+#include "ui/views/mesh_data.h"
+
+namespace lamella::ui {
+namespace {
+
+template <class Array>
+vtkSmartPointer<Array> named(const char* name, std::size_t size) {
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(size));
+  return array;
+}
+
+void add_numbers(vtkDataSetAttributes& to, const char* name, const std::vector<std::int32_t>& of) {
+  auto array = named<vtkIntArray>(name, of.size());
+  std::copy(of.begin(), of.end(), array->GetPointer(0));
+  to.AddArray(array);
+}
+
+}  // namespace
+
+void MeshSkin::set(std::shared_ptr<const MeshState> state, std::shared_ptr<const MeshFaces> faces) {
+  state_ = std::move(state);
+  faces_ = std::move(faces);
+  if (state_ && !faces_) faces_ = std::make_shared<const MeshFaces>(mesh_faces(state_->mesh));
+  grid_ = nullptr;
+  elements_ = 0;
+  in_sight_.clear();
+  chosen_.clear();
+}
+
+void MeshSkin::choose(const std::vector<bool>& body_visible,
+                      const std::optional<std::pair<double, double>>& quality) {
+  grid_ = nullptr;
+  if (!state_) return;
+  const SimplexMesh<3>& mesh = state_->mesh;
+  const std::size_t count = mesh.elements.size();
+  in_sight_.assign(count, 1);
+  for (std::size_t e = 0; e < mesh.element_body.size() && !body_visible.empty(); ++e)
+    in_sight_[e] = body_visible[static_cast<std::size_t>(mesh.element_body[e])];
+  if (mesh.element_body.empty() && !body_visible.empty() && !body_visible[0])
+    in_sight_.assign(count, 0);
+  chosen_ = in_sight_;
+  if (!quality || state_->quality.size() != count) return;
+  for (std::size_t e = 0; e < count; ++e)
+    chosen_[e] =
+        chosen_[e] && state_->quality[e] >= quality->first && state_->quality[e] <= quality->second;
+}
+
+vtkSmartPointer<vtkPolyData> MeshSkin::skin(const std::vector<std::pair<Vec<3>, Vec<3>>>& planes) {
+  const SimplexMesh<3>& mesh = state_->mesh;
+  const std::vector<char>* drawn = &chosen_;
+  std::vector<char> left;
+  if (!planes.empty()) {
+    std::vector<char> inside(mesh.points.size(), 1);
+    for (const auto& [origin, normal] : planes)
+      for (std::size_t n = 1; n < inside.size(); ++n)
+        if ((mesh.points[n] - origin).dot(normal) >= 0) inside[n] = 0;
+    left.resize(mesh.elements.size());
+    for (std::size_t e = 0; e < left.size(); ++e) {
+      const auto& c = mesh.elements[e];
+      left[e] = chosen_[e] && (inside[std::size_t(c[0])] || inside[std::size_t(c[1])] ||
+                               inside[std::size_t(c[2])] || inside[std::size_t(c[3])]);
+    }
+    drawn = &left;
+  }
+  std::vector<std::int32_t> element, facet, node;
+  std::vector<char> opened;
+  std::vector<std::int32_t> corners;
+  std::vector<std::int32_t> point_of(mesh.points.size(), -1);
+  elements_ = 0;
+  for (std::size_t e = 0; e < drawn->size(); ++e) {
+    if (!(*drawn)[e]) continue;
+    ++elements_;
+    for (int k = 0; k < 4; ++k) {
+      const std::int32_t beyond = faces_->neighbor[e][std::size_t(k)];
+      if (beyond >= 0 && (*drawn)[static_cast<std::size_t>(beyond)]) continue;
+      const std::int32_t number = faces_->facet(e, k);
+      element.push_back(static_cast<std::int32_t>(e));
+      facet.push_back(number);
+      // Where a body ends at one that is hidden, no cut has opened it.
+      opened.push_back(number < 0 && beyond >= 0 && in_sight_[static_cast<std::size_t>(beyond)]);
+      for (const NodeId n : opposite_facet<3>(mesh.elements[e], k)) {
+        std::int32_t& point = point_of[static_cast<std::size_t>(n)];
+        if (point < 0) {
+          point = static_cast<std::int32_t>(node.size());
+          node.push_back(n);
+        }
+        corners.push_back(point);
+      }
+    }
+  }
+  std::vector<Vec<3>> points;
+  points.reserve(node.size());
+  for (const std::int32_t n : node) points.push_back(mesh.points[static_cast<std::size_t>(n)]);
+  auto ids = vtkSmartPointer<vtkTypeInt32Array>::New();
+  ids->SetNumberOfValues(static_cast<vtkIdType>(corners.size()));
+  std::copy(corners.begin(), corners.end(), ids->GetPointer(0));
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(3, ids);
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(make_points(points));
+  data->SetPolys(cells);
+  add_numbers(*data->GetCellData(), element_array, element);
+  add_numbers(*data->GetCellData(), facet_array, facet);
+  auto by_cut = named<vtkUnsignedCharArray>(opened_array, opened.size());
+  std::copy(opened.begin(), opened.end(), by_cut->GetPointer(0));
+  data->GetCellData()->AddArray(by_cut);
+  add_numbers(*data->GetPointData(), node_array, node);
+  add_fields(*state_, element, node, *data->GetCellData(), *data->GetPointData());
+  return data;
+}
+
+vtkUnstructuredGrid* MeshSkin::grid() {
+  if (grid_ || !state_) return grid_;
+  const SimplexMesh<3>& mesh = state_->mesh;
+  std::vector<std::int32_t> element;
+  for (std::size_t e = 0; e < chosen_.size(); ++e)
+    if (chosen_[e]) element.push_back(static_cast<std::int32_t>(e));
+  vtkNew<vtkTypeInt64Array> corners;
+  corners->SetNumberOfValues(static_cast<vtkIdType>(4 * element.size()));
+  auto* out = corners->GetPointer(0);
+  for (const std::int32_t e : element)
+    for (const NodeId n : mesh.elements[static_cast<std::size_t>(e)]) *out++ = n;
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(4, corners);
+  std::vector<std::int32_t> node(mesh.points.size());
+  for (std::size_t n = 0; n < node.size(); ++n) node[n] = static_cast<std::int32_t>(n);
+  grid_ = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  grid_->SetPoints(make_points(mesh.points));
+  grid_->SetCells(VTK_TETRA, cells);
+  add_numbers(*grid_->GetCellData(), element_array, element);
+  add_numbers(*grid_->GetPointData(), node_array, node);
+  add_fields(*state_, element, node, *grid_->GetCellData(), *grid_->GetPointData());
+  add_velocity(*state_, *grid_->GetPointData());
+  return grid_;
+}
+
+}  // namespace lamella::ui
