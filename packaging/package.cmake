@@ -7,9 +7,14 @@ set(share ${CMAKE_INSTALL_DATADIR})
 if(TARGET lamella-cli)
   set_target_properties(lamella-cli PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
   install(TARGETS lamella-cli)
+  set(completion ${CMAKE_BINARY_DIR}/lamella-cli.bash)
+  add_custom_command(OUTPUT ${completion}
+    COMMAND lamella-cli completion bash > ${completion} DEPENDS lamella-cli VERBATIM)
+  add_custom_target(lamella_completion ALL DEPENDS ${completion})
+  install(FILES ${completion} DESTINATION ${share}/bash-completion/completions RENAME lamella-cli)
   find_program(GZIP gzip)
   if(GZIP)
-    foreach(page lamella-cli.1 lamella-cli-flow.1)
+    foreach(page lamella-cli.1 lamella-cli-flow.1 lamella-cli-run.1)
       set(packed ${CMAKE_BINARY_DIR}/${page}.gz)
       add_custom_command(OUTPUT ${packed}
         COMMAND ${GZIP} -9nc ${CMAKE_CURRENT_LIST_DIR}/${page} > ${packed}
