@@ -8,6 +8,7 @@ namespace lamella::cli {
 /// Each runs one subcommand and returns the exit status. `line` is the command line, for the
 /// report.
 int run_mesh(const MeshCommand& command, const std::string& line, Console& console);
+int run_study(const RunCommand& command, const std::string& line, Console& console);
 int run_adapt(const AdaptCommand& command, Console& console);
 int run_generate(const GenerateCommand& command, Console& console);
 int run_export(const ExportCommand& command, Console& console);

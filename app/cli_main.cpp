@@ -49,20 +49,21 @@ int main(int argc, char** argv) {
         },
         *command);
     Console console(json, interrupt.token());
-    return std::visit(Overloaded{[&](const MeshCommand& c) {
-                                   return run_mesh(c, command_line(argc, argv), console);
-                                 },
-                                 [&](const AdaptCommand& c) { return run_adapt(c, console); },
-                                 [&](const GenerateCommand& c) { return run_generate(c, console); },
-                                 [&](const ExportCommand& c) { return run_export(c, console); },
-                                 [&](const CheckCommand& c) { return run_check(c, console); },
-                                 [&](const InfoCommand& c) { return run_info(c, console); },
-                                 [&](const SampleCommand& c) { return run_sample(c, console); },
-                                 [&](const CaseCommand& c) { return run_case(c, console); },
-                                 [&](const BoxCommand& c) { return run_box(c, console); },
-                                 [&](const SliceCommand& c) { return run_slice(c, console); },
-                                 [&](const FlowCommand& c) { return run_flow(c, console); }},
-                      *command);
+    return std::visit(
+        Overloaded{
+            [&](const MeshCommand& c) { return run_mesh(c, command_line(argc, argv), console); },
+            [&](const RunCommand& c) { return run_study(c, command_line(argc, argv), console); },
+            [&](const AdaptCommand& c) { return run_adapt(c, console); },
+            [&](const GenerateCommand& c) { return run_generate(c, console); },
+            [&](const ExportCommand& c) { return run_export(c, console); },
+            [&](const CheckCommand& c) { return run_check(c, console); },
+            [&](const InfoCommand& c) { return run_info(c, console); },
+            [&](const SampleCommand& c) { return run_sample(c, console); },
+            [&](const CaseCommand& c) { return run_case(c, console); },
+            [&](const BoxCommand& c) { return run_box(c, console); },
+            [&](const SliceCommand& c) { return run_slice(c, console); },
+            [&](const FlowCommand& c) { return run_flow(c, console); }},
+        *command);
   } catch (const std::bad_alloc&) {
     return Console(json, interrupt.token())
         .fail({Code::memory, "There is not enough memory for this mesh.",

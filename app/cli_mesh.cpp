@@ -1,14 +1,15 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
 #include "app/cli_domain.h"
 #include "app/cli_groups.h"
+#include "app/cli_job.h"
 #include "app/cli_sizing.h"
 #include "core/mesh/validate.h"
+#include "core/project/project_file.h"
 #include "core/study/first_mesh.h"
 #include "core/study/forecast.h"
 #include "core/study/join.h"
@@ -20,31 +21,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_study(const std::string& file) {
-  const fs::path ending = fs::path(file).extension();
-  return ending == ".json" || ending == ".lamella";
-}
-
 /// The study of the command line and the files it reads.
 struct Request {
   Study study;
   std::vector<fs::path> files;
+  Project project;  ///< whose copies the files may be
 };
 
-Result<Request> request_of(const MeshCommand& c) {
+Result<Request> request_of(const MeshCommand& c, Console& console) {
   Request request;
-  const auto studies = std::count_if(c.inputs.begin(), c.inputs.end(), is_study);
+  const auto studies = std::count_if(c.inputs.begin(), c.inputs.end(), names_study);
   if (studies > 0 && c.inputs.size() > 1)
     return Error{Code::usage, "A study brings its own parts: give the study alone.", ""};
   if (studies > 0) {
-    Result<Study> study = read_study(c.inputs.front());
-    if (!study) {
-      Error error = study.error();
-      error.code = Code::bad_input;
-      return error;
-    }
-    request.study = std::move(*study);
-    request.files = input_files(request.study, fs::path(c.inputs.front()).parent_path());
+    Result<Project> project = open_project(c.inputs.front());
+    if (!project) return of_input(project.error());
+    tell_notes(project->notes, console);
+    request.study = project->study;
+    request.files = project->files;
+    request.project = std::move(*project);
     if (request.files.empty() && request.study.zones.empty())
       return Error{Code::bad_input, "\"" + c.inputs.front() + "\": the study names no inputs.",
                    "Add the parts to \"inputs\"."};
@@ -52,6 +47,9 @@ Result<Request> request_of(const MeshCommand& c) {
     request.study.name = fs::path(c.inputs.front()).stem().string();
     for (const std::string& input : c.inputs) request.study.inputs.push_back({input});
     request.files.assign(c.inputs.begin(), c.inputs.end());
+    for (std::size_t k = 0; k < request.files.size(); ++k)
+      if (Result<void> known = identify(request.study.inputs[k], request.files[k]); !known)
+        return of_input(known.error());
   }
   if (c.unit)
     for (StudyInput& input : request.study.inputs) input.unit = unit_factor(*c.unit);
@@ -117,85 +115,6 @@ void apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study
   study.bodies = std::move(bodies);
 }
 
-void tell_iteration(const IterationRecord& r, Console& console) {
-  if (r.iteration == 0 && r.forecast_nodes > 0)
-    console.say("about " + grouped(static_cast<std::size_t>(r.forecast_nodes)) + " nodes and " +
-                grouped(static_cast<std::size_t>(r.forecast_memory) + 1) +
-                " MB are to be expected");
-  if (r.iteration == 0)
-    console.say(" it      nodes   elements   layers mean     5 %   quality mean   worst    time");
-  char line[160];
-  std::snprintf(line, sizeof line, "%3d %10s %10s   %11.2f %7.2f   %12.3f %7.3f %6.1f s",
-                r.iteration, grouped(r.nodes).c_str(), grouped(r.elements).c_str(), r.layers.mean,
-                r.layers.p5, r.quality_mean, r.quality_min, r.seconds);
-  std::string text = line;
-  if (r.mixed > 0) {
-    std::snprintf(line, sizeof line, "   %s mixed, interface error %.4f", grouped(r.mixed).c_str(),
-                  r.interface_error);
-    text += line;
-  }
-  if (r.flow_rate > 0)
-    text += "   flow " + short_number(r.flow_rate, 5) + " mm3/s at " +
-            short_number(r.flow_pressure, 4) + " MPa";
-  console.say(text);
-  if (!console.json()) return;
-  Json json = Json::parse(record_json(r));
-  json["phase"] = "iteration";
-  console.emit(dump(json));
-}
-
-void tell_end(const Outcome& outcome, const Report& report, const std::string& stem,
-              Console& console) {
-  for (const BodyOutcome& b : outcome.bodies) {
-    char line[240];
-    const double difference = b.cad_volume > 0 ? 100 * (b.mesh_volume / b.cad_volume - 1) : 0;
-    if (outcome.state->filling)
-      std::snprintf(line, sizeof line,
-                    "%s: layers %.2f (5 %%: %.2f) of %d, volume %+.3f %%, interface error %.4f at "
-                    "%.3g mm across",
-                    b.name.c_str(), b.layers.mean, b.layers.p5, b.layers_asked, difference,
-                    b.interface_error, b.interface_size);
-    else
-      std::snprintf(line, sizeof line,
-                    "%s: layers %.2f (5 %%: %.2f) of %d, volume %+.3f %%, boundary within %.3g mm, "
-                    "part within %.3g mm of %.3g mm, first mesh by %s",
-                    b.name.c_str(), b.layers.mean, b.layers.p5, b.layers_asked, difference,
-                    b.boundary_distance.to_surface.distance,
-                    b.boundary_distance.from_surface.distance, b.chord_tolerance,
-                    b.first_mesh_by.c_str());
-    console.say(line);
-    for (const std::string& note : b.notes) console.say("  note: " + note);
-  }
-  console.say("report " + stem + ".html");
-  Json bodies = Json::array();
-  for (const BodyOutcome& b : outcome.bodies)
-    bodies.push_back({{"name", b.name},
-                      {"layers_asked", b.layers_asked},
-                      {"layers_mean", b.layers.mean},
-                      {"layers_p5", b.layers.p5},
-                      {"cad_volume", b.cad_volume},
-                      {"mesh_volume", b.mesh_volume},
-                      {"boundary_distance", b.boundary_distance.largest()},
-                      {"boundary_to_part", farthest_json(b.boundary_distance.to_surface)},
-                      {"part_to_boundary", farthest_json(b.boundary_distance.from_surface)},
-                      {"chord_tolerance", b.chord_tolerance},
-                      {"interface_size", b.interface_size},
-                      {"interface_error", b.interface_error},
-                      {"first_mesh_by", b.first_mesh_by},
-                      {"notes", b.notes}});
-  console.emit(dump({{"phase", "done"},
-                     {"converged", outcome.converged},
-                     {"cancelled", outcome.cancelled},
-                     {"nodes", report.final_record.nodes},
-                     {"elements", report.final_record.elements},
-                     {"quality_min", report.final_record.quality_min},
-                     {"quality_mean", report.final_record.quality_mean},
-                     {"valid", report.validity.valid()},
-                     {"bodies", bodies},
-                     {"report", stem + ".json"},
-                     {"seconds", outcome.seconds}}));
-}
-
 /// The end of `mesh --forecast`.
 int tell_forecast(const std::vector<BodyForecast>& bodies, bool with_sizing, Console& console) {
   const auto say = [&](const std::string& who, const MeshForecast& f) {
@@ -224,8 +143,8 @@ int tell_forecast(const std::vector<BodyForecast>& bodies, bool with_sizing, Con
 int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
   // What would fail at the end is told at the beginning.
   for (const std::string& output : c.outputs)
-    if (Result<void> known = check_export_name(output); !known) return console.fail(known.error());
-  Result<Request> request = request_of(c);
+    if (Result<void> known = check_output(output); !known) return console.fail(known.error());
+  Result<Request> request = request_of(c, console);
   if (!request) return console.fail(request.error());
   Study& study = request->study;
   std::optional<tbb::global_control> limit;
@@ -242,23 +161,11 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
   if (!parts) return console.fail(parts.error());
   apply_to_bodies(c, *parts, study);
 
-  ReportContext context;
-  context.command = line;
-  for (const fs::path& file : request->files) {
-    Result<InputFile> input = describe_input(file);
-    if (!input) return console.fail(input.error());
-    context.inputs.push_back(std::move(*input));
-  }
-  for (const Part& part : *parts) {
-    console.say(part.name + ": " + grouped(part.surface.facets.size()) + " facets, " +
-                short_number(part.cad_volume, 6) +
-                " mm3, n = " + std::to_string(settings_of(study, part.name).layers));
-    console.emit(dump({{"phase", "body"},
-                       {"name", part.name},
-                       {"facets", part.surface.facets.size()},
-                       {"volume", part.cad_volume},
-                       {"notes", part.notes}}));
-  }
+  Job job;
+  job.command = line;
+  job.inputs = inputs_of(study);
+  job.copies = request->project.copies;
+  tell_parts(*parts, study, console);
 
   if (c.forecast) {
     const Result<std::vector<BodyForecast>> bodies =
@@ -267,43 +174,14 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
     if (!bodies) return console.fail(bodies.error());
     return tell_forecast(*bodies, !study.sizing.empty(), console);
   }
-  Result<Outcome> outcome =
-      run(study, *parts, meshers_for(mesher_choice(c.mesher), study.options.seed),
-          progress.portion(0.05, 0.95),
-          [&](const IterationRecord& r, const auto&) { tell_iteration(r, console); });
-  if (!outcome) return console.fail(outcome.error());
-
-  // After a cancel the best mesh is written all the same: no stop request goes along any more.
-  const Progress closing = outcome->cancelled ? Progress{} : progress.portion(0.95, 1, "writing");
-  for (const std::string& output : c.outputs) {
-    Result<ExportCertificate> proof =
-        export_mesh(output, *outcome->state, study, context.inputs, closing);
-    if (!proof) return console.fail(proof.error());
-    tell_written(output, *proof, console);
-    context.exports.push_back(std::move(*proof));
-  }
-  Result<Report> report = build_report(study, *outcome, context, closing);
-  if (!report) return console.fail(report.error());
-  const std::string stem = c.report.empty()
-                               ? fs::path(c.outputs.front()).replace_extension(".report").string()
-                               : c.report;
-  if (Result<void> written = write_report(*report, stem); !written)
-    return console.fail(written.error());
-  tell_end(*outcome, *report, stem, console);
-
-  if (outcome->cancelled)
-    return console.fail({Code::cancelled, "Cancelled; the best mesh so far was written.", ""});
-  if (c.min_quality && report->final_record.quality_min < *c.min_quality)
-    return console.fail({Code::poor_quality,
-                         "The worst element has quality " +
-                             short_number(report->final_record.quality_min, 3) + ", below " +
-                             short_number(*c.min_quality, 3) + "; the mesh was written.",
-                         "More iterations may help."});
-  if (!outcome->converged)
-    return console.fail({Code::not_converged,
-                         "Layers and node count have not settled; the mesh was written.",
-                         "Ask for more --iterations, or see the report for where layers lack."});
-  return 0;
+  job.study = std::move(study);
+  job.mesher = mesher_choice(c.mesher);
+  job.outputs = c.outputs;
+  job.report = c.report.empty() ? report_stem(c.outputs.front()) : c.report;
+  Result<Made> made = make_mesh(job, *parts, progress.portion(0.05, 1), console);
+  if (!made) return console.fail(made.error());
+  const std::optional<Error> verdict = verdict_on(*made, c.min_quality);
+  return verdict ? console.fail(*verdict) : 0;
 }
 
 int run_generate(const GenerateCommand& c, Console& console) {

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "app/cli_completion.h"
+#include "app/cli_run_options.h"
 #include "core/base/version.h"
 #include "core/cad/sample_parts.h"
 #include "core/metric/analytic.h"
@@ -24,11 +26,12 @@ std::string format_endings() {
 const char* const kFooter = R"(
 Lengths are in mm, angles in radians. Exit status: 0 done, 1 error, 2 usage, 3 bad input,
 4 not converged (the mesh is written), 5 quality below the limit asked, 6 memory limit,
-130 cancelled (Ctrl-C; `mesh` and `adapt` write what they have).
+130 cancelled (Ctrl-C; `mesh`, `run` and `adapt` write what they have).
 
 Examples:
   lamella-cli sample t_junction -o t.step
   lamella-cli mesh t.step -n 4 -o t.msh -o t.vtu
+  lamella-cli run t.study.json --set body.n=2,4,8 -o t.lamella
   lamella-cli mesh t.step --size-sphere 0,0,0,2,0.3 --forecast
   lamella-cli check t.msh --layers 4
   lamella-cli export t.msh t.inp
@@ -453,7 +456,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->option_text("...")
       ->required();
   m->add_option("-o,--output", mesh.outputs,
-                "File to write: " + format_endings() + "; may be repeated")
+                "File to write: " + format_endings() + ", .lamella (project); may be repeated")
       ->option_text("FILE")
       ->allow_extra_args(false);
   m->add_flag("--forecast", mesh.forecast,
@@ -525,6 +528,10 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   m->add_option("--report", mesh.report, "Stem of the report: STEM.json and STEM.html [OUT.report]")
       ->option_text("STEM");
   add_json(m, mesh.json);
+
+  RunCommand run;
+  CLI::App* r = app.add_subcommand("run", "Run a study as the window does, or a sweep of settings");
+  add_run(r, run);
 
   AdaptCommand adapt;
   CLI::App* a = app.add_subcommand("adapt", "Adapt a mesh to a metric, in 2D, 3D or 4D");
@@ -633,6 +640,13 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       "flow", "Stokes flow between gates and vents, and the metric corrected by it");
   add_flow(f, flow);
 
+  std::string shell;
+  CLI::App* t = app.add_subcommand("completion", "Print what completes these commands in a shell");
+  t->add_option("SHELL", shell, "bash")
+      ->option_text(" ")
+      ->required()
+      ->check(CLI::IsMember({"bash"}));
+
   app.footer(kFooter);  // after the subcommands, which would repeat it
   try {
     app.parse(argc, argv);
@@ -648,6 +662,11 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
     }
     return mesh;
   }
+  if (t->parsed()) {
+    std::cout << bash_completion(app);
+    return std::nullopt;
+  }
+  if (r->parsed()) return run;
   if (a->parsed()) {
     if (adapt.sol.empty() && adapt.metric.empty()) {
       std::cerr << "lamella-cli: adapt needs --sol or --metric.\n";

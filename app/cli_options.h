@@ -48,6 +48,21 @@ struct MeshCommand {
   bool json = false;
 };
 
+/// A whole study as the window runs it, or a sweep of its settings.
+struct RunCommand {
+  std::string study;
+  std::vector<std::string> outputs;  ///< none: the project itself
+  std::vector<std::string> set;      ///< PATH=VALUE,..
+  std::optional<std::size_t> only;   ///< combination, from 1
+  bool resume = false;
+  std::string table;
+  std::optional<int> threads;
+  std::optional<double> memory;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> min_quality;
+  bool json = false;
+};
+
 struct AdaptCommand {
   std::string mesh, output, sol, metric;
   bool background = true;
@@ -144,9 +159,9 @@ struct FlowCommand {
   bool json = false;
 };
 
-using Command =
-    std::variant<MeshCommand, AdaptCommand, GenerateCommand, ExportCommand, CheckCommand,
-                 InfoCommand, SampleCommand, CaseCommand, BoxCommand, SliceCommand, FlowCommand>;
+using Command = std::variant<MeshCommand, RunCommand, AdaptCommand, GenerateCommand, ExportCommand,
+                             CheckCommand, InfoCommand, SampleCommand, CaseCommand, BoxCommand,
+                             SliceCommand, FlowCommand>;
 
 /// Parses the command line. Help, version and errors of usage are printed here: the exit status is
 /// in `status` then, and nothing is returned.

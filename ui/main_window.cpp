@@ -3,6 +3,7 @@
 #include <QAbstractButton>
 #include <QCloseEvent>
 #include <QDragEnterEvent>
+#include <QEventLoop>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QLabel>
@@ -49,10 +50,7 @@ QString duration(double seconds) {
   return QString("%1:%2").arg(s / 60).arg(s % 60, 2, 10, QChar('0'));
 }
 
-bool is_study(const QString& file) {
-  const QString suffix = QFileInfo(file).suffix().toLower();
-  return suffix == "lamella" || suffix == "json";
-}
+bool is_study(const QString& file) { return names_study(file.toStdString()); }
 
 bool is_mesh(const QString& file, const MeshFormats& formats) {
   const Result<const MeshFormat*> format = formats.of_file(file.toStdString());
@@ -300,6 +298,9 @@ void MainWindow::connect_session() {
   connect(session_, &Session::failed, this, [this](const QString& message, const QString& hint) {
     banner_->show_message(Banner::Kind::error, message, hint);
   });
+  connect(session_, &Session::noticed, this, [this](const QString& what, const QString& notes) {
+    banner_->show_message(Banner::Kind::info, what, notes);
+  });
   connect(session_, &Session::saved, this, [this](const QString& file) {
     statusBar()->showMessage(tr("Saved %1").arg(file), 4000);
   });
@@ -460,6 +461,7 @@ void MainWindow::update_status() {
     state_->setText(session_->cancelling()            ? tr("Cancelling…")
                     : session_->paused()              ? tr("Paused")
                     : activity == Activity::loading   ? tr("Opening…")
+                    : activity == Activity::saving    ? tr("Saving…")
                     : activity == Activity::exporting ? tr("Exporting…")
                     : activity == Activity::checking  ? tr("Looking…")
                     : activity == Activity::flowing   ? tr("Solving the flow…")
@@ -546,14 +548,29 @@ void MainWindow::ask_open(bool add) {
 bool MainWindow::save(bool ask_name) {
   QString file = QString::fromStdString(session_->file().string());
   if (file.isEmpty() || ask_name || !is_study(file)) {
+    const QStringList kinds = {tr("Project (*.lamella)"),
+                               tr("Project with copies of its parts, to hand on (*.lamella)"),
+                               tr("Study as text, without meshes (*.json)")};
+    const bool copies = session_->study().embed_inputs;
+    QString kind = kinds[copies ? 1 : 0];
     const QString name = QString::fromStdString(session_->study().name) + ".lamella";
     file = QFileDialog::getSaveFileName(this, tr("Save study"),
                                         folder_.isEmpty() ? name : folder_ + "/" + name,
-                                        tr("Studies (*.lamella)"));
+                                        kinds.join(";;"), &kind);
     if (file.isEmpty()) return false;
-    if (QFileInfo(file).suffix().isEmpty()) file += ".lamella";
+    if (QFileInfo(file).suffix().isEmpty()) file += kind == kinds[2] ? ".json" : ".lamella";
+    if (kind != kinds[2] && copies != (kind == kinds[1])) {
+      Study study = session_->study();
+      study.embed_inputs = !copies;
+      session_->edit(copies ? tr("Link the parts") : tr("Keep copies of the parts"),
+                     std::move(study));
+    }
   }
   session_->save(file.toStdString());
+  // Whoever closes the window waits for its file.
+  QEventLoop loop;
+  connect(session_, &Session::activity_changed, &loop, &QEventLoop::quit);
+  if (session_->activity() == Activity::saving) loop.exec();
   return !session_->modified();
 }
 

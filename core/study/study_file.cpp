@@ -469,6 +469,8 @@ std::string mesh_key(Study study) {
   for (BodySettings& body : study.bodies) {
     body.visible = true;
     body.color.reset();
+    // Who keeps what bodies share is asked in one mesh of all only.
+    if (!study.domain) body.role = BodyRole::none;
   }
   return study_to_json(study);
 }

@@ -3,6 +3,7 @@
 #include "core/io/mesh_file.h"
 #include "core/io_vtk/vtk_formats.h"
 #include "core/mesh/sample_meshes.h"
+#include "core/project/project_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace lamella {
@@ -39,6 +40,21 @@ void read_million(benchmark::State& state, const char* name) {
   for (auto _ : state)
     if (!format.read(file, {})) return state.SkipWithError("not read");
 }
+
+/// The same in a project: mesh written, read again and compared, packed and proven.
+void save_million(benchmark::State& state) {
+  const Case made;
+  const MeshFormat& format = **made.formats.called("vtu");
+  ProjectContent content;
+  content.write_mesh = [&](const std::filesystem::path& vtu) -> Result<void> {
+    const auto proof = write_mesh_file(format, made.mesh, made.fields, vtu);
+    if (!proof) return proof.error();
+    return {};
+  };
+  for (auto _ : state)
+    if (!save_project(content, made.folder / "m.lamella")) return state.SkipWithError("not saved");
+}
+BENCHMARK(save_million)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 #define LAMELLA_FORMAT(name)                                                                   \
   BENCHMARK_CAPTURE(write_million, name, #name)->Unit(benchmark::kMillisecond)->UseRealTime(); \

@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "core/base/atomic_file.h"
 #include "core/cad/load_parts.h"
 #include "tests/support/box_mesh.h"
 #include "ui/services.h"
@@ -99,6 +100,7 @@ struct FakeServices {
                                   const Study&) -> Result<ExportCertificate> {
       if (!std::filesystem::is_directory(file.parent_path()))
         return Error{Code::io, "Cannot write " + file.string() + ".", "Choose another folder."};
+      if (Result<void> written = write_file(file, "a mesh"); !written) return written.error();
       ++exports;
       ExportCertificate proof;
       proof.notes = {"a note of the export"};

@@ -13,6 +13,7 @@
 
 #include "app/window_services.h"
 #include "core/io/stl.h"
+#include "core/project/project_file.h"
 #include "core/study/study_file.h"
 #include "core/study/zone_surface.h"
 #include "tests/support/fake_services.h"
@@ -421,7 +422,7 @@ TEST_F(MultidomainTest, BodiesByFormulaAreListedDrawnAndRemoved) {
   session().save(folder_ / "again.lamella");
   ASSERT_TRUE(wait_idle());
   EXPECT_FALSE(session().modified());
-  EXPECT_EQ(read_study(folder_ / "again.lamella")->zones, balls.zones);
+  EXPECT_EQ(open_project(folder_ / "again.lamella").value().study.zones, balls.zones);
   EXPECT_FALSE(command_line(study())) << "no option says a ball";
 }
 

@@ -1,18 +1,22 @@
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <QElapsedTimer>
 #include <QSignalSpy>
 #include <QSpinBox>
 #include <QTest>
 #include <cmath>
+#include <cstdlib>
 
 #include "app/window_services.h"
+#include "core/base/atomic_file.h"
 #include "core/cad/sample_parts.h"
 #include "core/io/msh.h"
 #include "core/io_vtk/vtu.h"
 #include "core/mesh/validate.h"
 #include "tests/support/temporary_folder.h"
 #include "ui/actions/actions.h"
+#include "ui/commands/study_edits.h"
 #include "ui/main_window.h"
 #include "ui/session/session.h"
 #include "ui/views/model_view.h"
@@ -111,6 +115,28 @@ TEST_F(RealRunTest, OpensRunsCancelsRunsAgainCutsAndExports) {
     EXPECT_EQ(back->bodies, state->mesh.bodies);
     EXPECT_TRUE(validate<3>(*back));
   }
+}
+
+TEST_F(RealRunTest, BatchMakesTheSameMeshBitForBit) {
+  open_sample("plate");
+  window_.findChild<QSpinBox*>("layers")->setValue(2);
+  window_.findChild<QSpinBox*>("iterations")->setValue(1);
+  add_group(session(), GroupKind::gate, session().body(0).name, {1});
+  add_sizing(session(), session().body(0).name, "gate", SphereShape{{5, 5, 1}, 2});
+  session().save(folder_ / "w.lamella");
+  ASSERT_TRUE(wait_idle());
+  action(Act::run)->trigger();
+  ASSERT_TRUE(wait_idle());
+  ASSERT_TRUE(session().outcome());
+  session().export_mesh(folder_ / "window.msh");
+  ASSERT_TRUE(wait_idle());
+  const std::string line = "cd '" + folder_.path().string() +
+                           "' && " LAMELLA_BIN_DIR
+                           "/lamella-cli run w.lamella -o batch.msh --threads 1 > told 2>&1";
+  const int status = std::system(line.c_str());
+  ASSERT_TRUE(WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 4))
+      << read_file(folder_ / "told").value();
+  EXPECT_EQ(read_file(folder_ / "batch.msh").value(), read_file(folder_ / "window.msh").value());
 }
 
 }  // namespace

@@ -12,7 +12,9 @@
 #include <cmath>
 
 #include "core/base/atomic_file.h"
+#include "core/base/sha256.h"
 #include "core/cad/sample_parts.h"
+#include "core/project/project_file.h"
 #include "core/study/study_file.h"
 #include "tests/support/fake_services.h"
 #include "tests/support/temporary_folder.h"
@@ -201,9 +203,7 @@ TEST_F(StudyItemsTest, SavedStudyIsOpenedAsItWas) {
   session().save(folder_ / "s.lamella");
   ASSERT_TRUE(wait_idle());
   EXPECT_FALSE(session().modified());
-  const Result<Study> written = read_study(folder_ / "s.lamella");
-  ASSERT_TRUE(written);
-  EXPECT_EQ(written->inputs.at(0).file, "plate.step") << "a study can be moved with its parts";
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"plate.step", "s.lamella"}));
   const std::string asked = study_to_json(study());
 
   session().open({folder_ / "plate.step"});
@@ -215,24 +215,90 @@ TEST_F(StudyItemsTest, SavedStudyIsOpenedAsItWas) {
   EXPECT_FALSE(session().modified());
   EXPECT_TRUE(window_.view().section().has_value());
   session().save(folder_ / "nowhere" / "s.lamella");
+  ASSERT_TRUE(wait_idle());
   EXPECT_TRUE(window_.banner().isVisible());
   EXPECT_EQ(session().file(), folder_ / "s.lamella");
 }
 
-TEST_F(StudyItemsTest, SavingOtherSettingsKeepsTheMeshThatWasThere) {
-  const auto study = folder_ / "s.lamella", mesh = folder_ / "s.lamella.vtu";
-  ASSERT_TRUE(write_file(mesh, "a mesh of an hour ago"));
+TEST_F(StudyItemsTest, AMeshOfOtherSettingsIsKeptAsOne) {
+  run();
+  const auto study = folder_ / "s.lamella";
+  window_.findChild<QSpinBox*>("layers")->setValue(9);
+  ASSERT_TRUE(session().outdated());
   session().save(study);
   ASSERT_TRUE(wait_idle());
-  EXPECT_FALSE(std::filesystem::exists(mesh)) << "it would be taken for this study's";
-  EXPECT_EQ(read_file(folder_ / "s.lamella.vtu.bak").value(), "a mesh of an hour ago");
+  const Result<Project> kept = open_project(study);
+  ASSERT_TRUE(kept);
+  EXPECT_FALSE(kept->mesh.empty());
+  EXPECT_NE(kept->report_html.find("<html"), std::string::npos);
+  session().open_study(study);
+  ASSERT_TRUE(wait_idle());
+  EXPECT_NE(session().shown_state(), nullptr);
+  EXPECT_TRUE(session().outdated()) << "it is not taken for one of these settings";
+  EXPECT_EQ(session().body(0).layers, 9);
+  // Saved once more, the report of the mesh that was opened stays with it.
+  session().save(study);
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(open_project(study)->report_html, kept->report_html);
+}
+
+TEST_F(StudyItemsTest, AStudyAsTextIsOpenedAndSavedToo) {
+  const auto text = folder_ / "s.json";
+  window_.findChild<QSpinBox*>("layers")->setValue(6);
+  session().save(text);
+  ASSERT_TRUE(wait_idle());
+  EXPECT_FALSE(session().modified());
+  EXPECT_EQ(read_study(text)->inputs.at(0).file, "plate.step");
+  session().open({folder_ / "plate.step"});
+  ASSERT_TRUE(wait_idle());
+  window_.open_files({QString::fromStdString(text.string())});
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(session().body(0).layers, 6);
+}
+
+TEST_F(StudyItemsTest, InputsThatChangedOrWentAreTold) {
+  Study study = session().study();
+  study.embed_inputs = true;
+  session().edit("copies", study);
+  add_group(session(), GroupKind::vent, session().body(0).name, {2, 77});
+  window_.findChild<QSpinBox*>("layers")->setValue(6);
+  const auto file = folder_ / "s.lamella", part = folder_ / "plate.step";
+  session().save(file);
+  ASSERT_TRUE(wait_idle());
+  std::string step = read_file(part).value();
+  ASSERT_TRUE(write_file(part, step + "\n"));
+  QSignalSpy noticed(&session(), &Session::noticed);
+  session().open_study(file);
+  ASSERT_TRUE(wait_idle());
+  ASSERT_EQ(noticed.count(), 1);
+  const QString changed = noticed.takeFirst().at(1).toString();
+  EXPECT_TRUE(changed.contains("plate.step\" has changed")) << changed.toStdString();
+  EXPECT_TRUE(changed.contains("no face 77")) << changed.toStdString();
+  EXPECT_TRUE(window_.banner().isVisible());
+  EXPECT_EQ(session().body(0).layers, 6);
+  EXPECT_EQ(study_to_json(session().study()).find(sha256(step)), std::string::npos);
+
+  std::filesystem::remove(part);
+  session().open_study(file);
+  ASSERT_TRUE(wait_idle());
+  ASSERT_EQ(noticed.count(), 1);
+  EXPECT_TRUE(noticed.at(0).at(1).toString().contains("the copy in the project was read"));
+  EXPECT_EQ(session().parts().size(), 1u);
+  // The copy goes along when it is saved elsewhere.
+  session().save(folder_ / "t.lamella");
+  ASSERT_TRUE(wait_idle());
+  std::filesystem::remove(file);
+  session().open_study(folder_ / "t.lamella");
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(session().parts().size(), 1u);
+  EXPECT_EQ(session().body(0).layers, 6);
 }
 
 TEST_F(StudyItemsTest, AStudyOpensWithoutAMeshThatCannotBeRead) {
-  const auto study = folder_ / "s.lamella", mesh = folder_ / "s.lamella.vtu";
+  const auto study = folder_ / "s.lamella";
+  run();
   session().save(study);
   ASSERT_TRUE(wait_idle());
-  ASSERT_TRUE(write_file(mesh, "damaged"));
   fake_.mesh_is_damaged = true;
   QSignalSpy opened(&session(), &Session::study_opened), failed(&session(), &Session::failed);
   session().open_study(study);

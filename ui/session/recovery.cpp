@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/base/atomic_file.h"
+#include "core/project/project_file.h"
 #include "core/study/study_file.h"
 #include "ui/session/session.h"
 
@@ -39,7 +40,6 @@ Recovery::Recovery(Session& session, fs::path folder)
     else
       drop();
   });
-  connect(&session, &Session::saved, this, &Recovery::drop);
 }
 
 Recovery::~Recovery() { drop(); }
@@ -49,7 +49,7 @@ void Recovery::keep() {
   std::error_code ec;
   fs::create_directories(folder_, ec);
   // A full disk must not keep the user from working; saving tells of it.
-  if (write_study(session_.study_for({}), file_))
+  if (write_study(seen_from(session_.study(), {}), file_))
     (void)write_file(target_file(file_), session_.file().string());
 }
 

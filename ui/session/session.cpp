@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/geometry/triangles.h"
+#include "core/study/report.h"
 #include "core/study/study_file.h"
 #include "ui/commands/edit_study.h"
 #include "ui/commands/study_edits.h"
@@ -25,12 +26,6 @@ bool is_stl(const std::filesystem::path& file) {
   return text(file.extension().string()).compare(".stl", Qt::CaseInsensitive) == 0;
 }
 
-/// Where a study keeps its mesh.
-std::filesystem::path mesh_beside(const std::filesystem::path& study) {
-  std::filesystem::path file = study;
-  return file += ".vtu";
-}
-
 QString box_size(const ReferenceSurface<3>& surface) {
   if (surface.points.empty()) return {};
   Vec<3> low = surface.points.front();
@@ -43,20 +38,15 @@ QString box_size(const ReferenceSurface<3>& surface) {
   return units::size(size);
 }
 
-/// What the mesh depends on, as text.
-std::string asked(Study study) {
-  study.name.clear();
-  study.inputs.clear();
-  study.options.threads = 0;
-  study.options.memory.reset();
-  study.cuts.clear();
-  for (BodySettings& body : study.bodies) {
-    body.visible = true;
-    body.color.reset();
-    // Who keeps what bodies share is asked in one mesh of all only.
-    if (!study.domain) body.role = BodyRole::none;
-  }
-  return study_to_json(study);
+/// A mesh of which no more than itself is known.
+Iteration iteration_of(std::shared_ptr<const MeshState> state,
+                       std::shared_ptr<const MeshFaces> faces) {
+  Iteration iteration;
+  iteration.record.nodes = state->mesh.node_count();
+  iteration.record.elements = state->mesh.element_count();
+  iteration.state = std::move(state);
+  iteration.faces = std::move(faces);
+  return iteration;
 }
 
 }  // namespace
@@ -99,7 +89,7 @@ QColor Session::color_of(int index) const {
 
 bool Session::outdated() const {
   if (!run_study_ || iterations_.empty()) return false;
-  return asked(*run_study_) != asked(*study_);
+  return mesh_key(*run_study_) != mesh_key(*study_);
 }
 
 std::shared_ptr<const MeshState> Session::shown_state() const {
@@ -207,6 +197,9 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
             inputs.push_back({file.string(), units.back()});
           }
           Result<ReadParts> read = read_parts(services_, files, units, params, progress);
+          for (std::size_t k = 0; read && k < files.size(); ++k)
+            if (const Result<void> known = identify(inputs[k], files[k]); !known)
+              read = known.error();
           return [this, read = std::move(read), inputs, add, no_unit, params, unit]() mutable {
             set_activity(Activity::idle);
             if (!read) return report(read.error());
@@ -225,36 +218,36 @@ void Session::open_study(const std::filesystem::path& file,
   Q_EMIT logged(tr("Opening the study %1").arg(file_name(file)));
   begin(Activity::loading, [this, file, recovered_for](const Progress& progress) -> Worker::Done {
     struct Opened {
-      Study study;
+      Project project;
       ReadParts read;
       LoadParams params;
       std::shared_ptr<MeshState> mesh;
+      std::shared_ptr<const MeshFaces> faces;
       std::optional<Error> unread;  // why there is none
     };
     const auto open_all = [&]() -> Result<Opened> {
-      Result<Study> study = read_study(file);
-      if (!study) return study.error();
+      Result<Project> project = open_project(file, progress.portion(0, 0.3),
+                                             recovered_for.value_or(std::filesystem::path()));
+      if (!project) return project.error();
       Opened opened;
-      opened.study = std::move(*study);
+      opened.project = std::move(*project);
+      const Study& study = opened.project.study;
       std::vector<double> units;
-      for (const StudyInput& input : opened.study.inputs) units.push_back(input.unit);
-      opened.params.chord_tolerance = opened.study.options.chord_tolerance;
-      opened.params.angle_tolerance = opened.study.options.angle_tolerance;
-      const auto files = input_files(opened.study, file.parent_path());
-      Result<ReadParts> read = read_parts(services_, files, units, opened.params, progress);
+      for (const StudyInput& input : study.inputs) units.push_back(input.unit);
+      opened.params.chord_tolerance = study.options.chord_tolerance;
+      opened.params.angle_tolerance = study.options.angle_tolerance;
+      Result<ReadParts> read = read_parts(services_, opened.project.files, units, opened.params,
+                                          progress.portion(0.3, 0.9));
       if (!read) return read.error();
       opened.read = std::move(*read);
-      // From here on inputs are known by where they are.
-      for (std::size_t k = 0; k < files.size(); ++k)
-        opened.study.inputs[k].file =
-            std::filesystem::absolute(files[k]).lexically_normal().string();
-      std::error_code ec;
-      const std::filesystem::path mesh = mesh_beside(recovered_for.value_or(file));
-      if (!recovered_for && std::filesystem::is_regular_file(mesh, ec)) {
-        if (Result<MeshState> state = services_.read_mesh(mesh))
+      name_parts(opened.read, 0, study.left_out, true);
+      if (!opened.project.mesh.empty()) {
+        if (Result<MeshState> state = services_.read_mesh(opened.project.mesh))
           opened.mesh = std::make_shared<MeshState>(std::move(*state));
         else
           opened.unread = state.error();
+        if (opened.mesh)
+          opened.faces = std::make_shared<const MeshFaces>(mesh_faces(opened.mesh->mesh));
       }
       return opened;
     };
@@ -262,76 +255,78 @@ void Session::open_study(const std::filesystem::path& file,
     return [this, opened = std::move(opened), file, recovered_for]() mutable {
       set_activity(Activity::idle);
       if (!opened) return report(opened.error());
+      project_ = std::move(opened->project);
+      std::vector<std::string> notes = project_.notes;
+      for (std::string& note : unmatched(project_.study, opened->read.parts))
+        notes.push_back(std::move(note));
       read_with_ = opened->params;
-      name_parts(opened->read, 0, opened->study.left_out, true);
-      replace_all(std::move(opened->study), std::move(opened->read), 0);
+      replace_all(project_.study, std::move(opened->read), 0);
       file_ = recovered_for.value_or(file);
       if (recovered_for) {
         saved_.clear();
         compared_.reset();
       }
+      opened_mesh_ = opened->mesh;
       if (opened->mesh) {
-        run_study_ = study_;
-        Iteration iteration;
-        iteration.record.nodes = opened->mesh->mesh.node_count();
-        iteration.record.elements = opened->mesh->mesh.element_count();
-        iteration.state = opened->mesh;
-        add_iteration(std::move(iteration));
+        Study made_of = *project_.mesh_study;
+        arrange_bodies(made_of, *parts_);
+        run_study_ = std::make_shared<const Study>(std::move(made_of));
+        add_iteration(iteration_of(opened->mesh, opened->faces));
       }
       Q_EMIT study_changed();
       if (opened->unread) report(*opened->unread);
+      tell(tr("The study is open, but not all is as it was saved."), notes);
       Q_EMIT study_opened(text(file.string()));
     };
   });
 }
 
-Study Session::study_for(const std::filesystem::path& folder) const {
-  Study study = *study_;
-  for (StudyInput& input : study.inputs) {
-    const std::filesystem::path absolute = std::filesystem::absolute(input.file).lexically_normal();
-    const std::filesystem::path relative =
-        folder.empty() ? std::filesystem::path() : absolute.lexically_relative(folder);
-    // A file far away is better named where it is: the study may be moved without it.
-    const bool near = !relative.empty() && *relative.begin() != "..";
-    input.file = near ? relative.string() : absolute.string();
-  }
-  return study;
-}
-
 void Session::save(const std::filesystem::path& file) {
-  if (activity_ != Activity::idle || empty()) return;
-  const Study study = study_for(std::filesystem::absolute(file).parent_path());
-  if (const Result<void> written = save_study(study, file); !written)
-    return report(written.error());
-  file_ = file;
-  saved_ = study_to_json(*study_);
-  compared_.reset();
-  Q_EMIT logged(tr("Saved %1").arg(text(file.string())));
-  Q_EMIT study_changed();
-  const auto state = outdated() ? nullptr : shown_state();
-  const std::filesystem::path mesh = mesh_beside(file);
-  if (!state || !has_bodies()) {
-    // A mesh of other settings must not be taken for this study's, nor be lost.
-    std::error_code ec;
-    if (std::filesystem::is_regular_file(mesh, ec)) {
-      std::filesystem::path kept = mesh;
-      kept += ".bak";
-      std::filesystem::rename(mesh, kept, ec);
-      Q_EMIT logged(
-          tr("The mesh saved before is of other settings: it is %1 now.").arg(text(kept.string())));
-    }
-    Q_EMIT saved(text(file.string()));
-    return;
-  }
-  begin(Activity::exporting,
-        [this, state, file, mesh, study = study_](const Progress&) -> Worker::Done {
-          Result<ExportCertificate> written = services_.export_mesh(mesh, *state, *study);
-          return [this, written = std::move(written), file] {
+  if (activity_ != Activity::idle || !has_bodies()) return;
+  const auto state = shown_state();
+  begin(Activity::saving,
+        [this, file, state, study = study_, made_of = run_study_, outcome = outcome_,
+         opened = project_, opened_mesh = opened_mesh_](const Progress& progress) -> Worker::Done {
+          ProjectContent content;
+          content.study = *study;
+          content.copies = opened.copies;
+          if (state) {
+            if (made_of) content.mesh_study = *made_of;
+            content.write_mesh = [&](const std::filesystem::path& vtu) -> Result<void> {
+              Result<ExportCertificate> written = services_.export_mesh(vtu, *state, *study);
+              if (!written) return written.error();
+              return {};
+            };
+            if (outcome && outcome->state == state) {
+              if (Result<Report> made = build_report(made_of ? *made_of : *study, *outcome, {})) {
+                content.report_json = report_json(*made);
+                content.report_html = report_html(*made);
+              }
+            } else if (state == opened_mesh) {
+              content.report_json = opened.report_json;
+              content.report_html = opened.report_html;
+            }
+          }
+          Result<std::vector<std::string>> written = save_project(content, file, progress);
+          return [this, written = std::move(written), study, file] {
             set_activity(Activity::idle);
             if (!written) return report(written.error());
+            file_ = file;
+            saved_ = study_to_json(*study);
+            compared_.reset();
+            Q_EMIT logged(tr("Saved %1").arg(text(file.string())));
+            Q_EMIT study_changed();
             Q_EMIT saved(text(file.string()));
+            tell(tr("Saved, but not all of it."), *written);
           };
         });
+}
+
+void Session::tell(const QString& what, const std::vector<std::string>& notes) {
+  QStringList lines;
+  for (const std::string& note : notes) lines << text(note);
+  for (const QString& line : lines) Q_EMIT logged(line);
+  if (!lines.isEmpty()) Q_EMIT noticed(what, lines.join('\n'));
 }
 
 bool Session::modified() const {
@@ -369,13 +364,7 @@ void Session::open_mesh(const std::filesystem::path& file) {
       Study study;
       study.name = file.stem().string();
       replace_all(std::move(study), {}, 0);
-      auto state = std::make_shared<MeshState>(std::move(*read));
-      Iteration iteration;
-      iteration.record.nodes = state->mesh.node_count();
-      iteration.record.elements = state->mesh.element_count();
-      iteration.state = state;
-      iteration.faces = faces;
-      add_iteration(std::move(iteration));
+      add_iteration(iteration_of(std::make_shared<MeshState>(std::move(*read)), faces));
     };
   });
 }
@@ -388,6 +377,7 @@ void Session::take_parts(ReadParts read, const std::vector<StudyInput>& inputs, 
     all.sources = sources_;
     study = *study_;
   } else {
+    project_ = {};
     study.options = study_->options;
     study.name = !inputs.empty() ? std::filesystem::path(inputs.front().file).stem().string()
                                  : (read.parts.empty() ? "untitled" : read.parts.front().name);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/project/project_file.h"
 #include "core/study/domain.h"
 #include "ui/services.h"
 #include "ui/session/item.h"
@@ -20,7 +21,7 @@
 namespace lamella::ui {
 
 /// What the window is busy with.
-enum class Activity { idle, loading, running, exporting, checking, flowing };
+enum class Activity { idle, loading, saving, running, exporting, checking, flowing };
 
 /// One finished iteration: its record and the mesh it left.
 struct Iteration {
@@ -122,10 +123,9 @@ class Session : public QObject {
   /// may be none, and counts as modified.
   void open_study(const std::filesystem::path& file,
                   const std::optional<std::filesystem::path>& recovered_for = {});
-  /// Writes the study, with the mesh shown beside it (FILE.vtu) if there is one, and reports.
+  /// Saves the project: the study with the mesh shown and its report, or, as .json, the study
+  /// alone.
   void save(const std::filesystem::path& file);
-  /// The study as text with inputs that are found from `folder`.
-  Study study_for(const std::filesystem::path& folder) const;
 
   void run();
   /// Looks for overlaps of the bodies, and for gaps between them narrower than `gap_width` mm.
@@ -179,6 +179,8 @@ class Session : public QObject {
   void place_shown(const lamella::Vec<3>& at, double radius, const QString& text);
   void cut_asked(const lamella::Vec<3>& at);
   void failed(const QString& message, const QString& hint);
+  /// Something worth knowing, no failure; `notes` one a line.
+  void noticed(const QString& what, const QString& notes);
   /// An STL was read without a unit; its size may need another one.
   void unit_assumed(const QString& file, const QString& size);
   void logged(const QString& line);
@@ -194,6 +196,8 @@ class Session : public QObject {
   void set_activity(Activity activity);
   void begin(Activity activity, Worker::Job job);
   void report(const Error& error);
+  /// Tells the notes, if there are some.
+  void tell(const QString& what, const std::vector<std::string>& notes);
   void take_parts(ReadParts read, const std::vector<StudyInput>& inputs, bool add);
   /// Puts the study and its named parts in the place of what there was.
   void replace_all(Study study, ReadParts read, std::size_t first_new);
@@ -219,6 +223,8 @@ class Session : public QObject {
   std::vector<Iteration> iterations_;
   std::optional<Outcome> outcome_;
   std::shared_ptr<const Study> run_study_;
+  Project project_;  // as it was opened; its copies of inputs are in use
+  std::shared_ptr<const MeshState> opened_mesh_;
   Activity activity_ = Activity::idle;
   int shown_ = -1;
   int selected_ = -1;
