@@ -386,6 +386,38 @@
         <source>Theme, language, unit, memory, threads</source>
         <translation>Thème, langue, unité, mémoire, processeurs</translation>
     </message>
+    <message>
+        <source>&amp;Solve the flow</source>
+        <translation>&amp;Résoudre l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>Solve the flow between gates and vents through the mesh that is shown</source>
+        <translation>Résoudre l&apos;écoulement entre seuils et évents à travers le maillage affiché</translation>
+    </message>
+    <message>
+        <source>Flow &amp;arrows</source>
+        <translation>&amp;Flèches de l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>Show the flow as arrows, on the section or within the mesh</source>
+        <translation>Montrer l&apos;écoulement par des flèches, sur la coupe ou dans le maillage</translation>
+    </message>
+    <message>
+        <source>Stream&amp;lines</source>
+        <translation>&amp;Lignes de courant</translation>
+    </message>
+    <message>
+        <source>Show the ways of the fluid from the gates</source>
+        <translation>Montrer les chemins du fluide depuis les seuils</translation>
+    </message>
+    <message>
+        <source>Le&amp;vel sets</source>
+        <translation>Lignes de ni&amp;veau</translation>
+    </message>
+    <message>
+        <source>Show lines of equal velocity on the section, or of equal pressure</source>
+        <translation>Montrer les lignes de même vitesse sur la coupe, ou de même pression</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Banner</name>
@@ -571,6 +603,22 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
     <message>
         <source>not divided</source>
         <translation>non divisée</translation>
+    </message>
+    <message>
+        <source>corrects the mesh</source>
+        <translation>corrige le maillage</translation>
+    </message>
+    <message>
+        <source>The flow through its gates may refine this body</source>
+        <translation>L&apos;écoulement par ses seuils peut raffiner ce corps</translation>
+    </message>
+    <message>
+        <source>Flow</source>
+        <translation>Écoulement</translation>
+    </message>
+    <message>
+        <source>Flow through a body</source>
+        <translation>Écoulement à travers un corps</translation>
     </message>
 </context>
 <context>
@@ -1071,6 +1119,155 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
     </message>
 </context>
 <context>
+    <name>lamella::ui::FlowPanel</name>
+    <message>
+        <source>Acceleration</source>
+        <translation>Accélération</translation>
+    </message>
+    <message>
+        <source>Velocity</source>
+        <translation>Vitesse</translation>
+    </message>
+    <message>
+        <source>Strain rate</source>
+        <translation>Taux de déformation</translation>
+    </message>
+    <message>
+        <source>Change of direction</source>
+        <translation>Changement de direction</translation>
+    </message>
+    <message>
+        <source>Residual</source>
+        <translation>Résidu</translation>
+    </message>
+    <message>
+        <source>Directional residual</source>
+        <translation>Résidu directionnel</translation>
+    </message>
+    <message>
+        <source>Correct the mesh by the flow</source>
+        <translation>Corriger le maillage par l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>A run solves the flow once the mesh has settled, refines where the flow asks for it, and meshes again</source>
+        <translation>Un calcul résout l&apos;écoulement une fois le maillage stabilisé, raffine là où l&apos;écoulement le demande, et remaille</translation>
+    </message>
+    <message>
+        <source>What the mesh is to follow: the gradient of a field, or an indicator
+that is made even over the elements</source>
+        <translation>Ce que le maillage doit suivre : le gradient d&apos;un champ, ou un indicateur
+rendu uniforme sur les éléments</translation>
+    </message>
+    <message>
+        <source>By</source>
+        <translation>Par</translation>
+    </message>
+    <message>
+        <source>Strength</source>
+        <translation>Force</translation>
+    </message>
+    <message>
+        <source>Elements that the correction may ask for, over those without it</source>
+        <translation>Éléments que la correction peut demander, rapportés à ceux sans elle</translation>
+    </message>
+    <message>
+        <source>Elements at most</source>
+        <translation>Éléments au plus</translation>
+    </message>
+    <message>
+        <source>Rounds of flow and correction; 0: the flow is solved alone</source>
+        <translation>Passes d&apos;écoulement et de correction ; 0 : l&apos;écoulement seul est résolu</translation>
+    </message>
+    <message>
+        <source>Rounds</source>
+        <translation>Passes</translation>
+    </message>
+    <message>
+        <source>Correct by the flow</source>
+        <translation>Corriger par l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>No correction by the flow</source>
+        <translation>Pas de correction par l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>Correct by %1</source>
+        <translation>Corriger par %1</translation>
+    </message>
+    <message>
+        <source>Strength of the flow</source>
+        <translation>Force de l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>Elements for the flow</source>
+        <translation>Éléments pour l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>Rounds of the flow</source>
+        <translation>Passes de l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>Mean error</source>
+        <translation>Erreur moyenne</translation>
+    </message>
+    <message>
+        <source>To the right the flow asks for smaller sizes</source>
+        <translation>Vers la droite, l&apos;écoulement demande des tailles plus petites</translation>
+    </message>
+    <message>
+        <source>To the right the mean error is to be smaller</source>
+        <translation>Vers la droite, l&apos;erreur moyenne doit être plus petite</translation>
+    </message>
+    <message>
+        <source>Solve the flow to see what the correction comes to.</source>
+        <translation>Résolvez l&apos;écoulement pour voir ce que donne la correction.</translation>
+    </message>
+    <message>
+        <source>Counting…</source>
+        <translation>Comptage…</translation>
+    </message>
+    <message>
+        <source>About %L1 nodes instead of %L2, × %3.</source>
+        <translation>Environ %L1 nœuds au lieu de %L2, × %3.</translation>
+    </message>
+    <message>
+        <source>residual</source>
+        <translation>résidu</translation>
+    </message>
+    <message>
+        <source>Solving… Shift+F5 cancels.</source>
+        <translation>Résolution… Maj+F5 annule.</translation>
+    </message>
+    <message>
+        <source>Make a gate and a vent of groups of faces, and run: the flow between them is solved through the mesh.</source>
+        <translation>Faites de groupes de faces un seuil et un évent, et lancez le calcul : l&apos;écoulement entre eux est résolu à travers le maillage.</translation>
+    </message>
+    <message>
+        <source>No flow is known through this mesh. It needs a group that is a gate and one that is a vent.</source>
+        <translation>Aucun écoulement n&apos;est connu dans ce maillage. Il lui faut un groupe qui soit un seuil et un qui soit un évent.</translation>
+    </message>
+    <message>
+        <source>mm³/s</source>
+        <translation>mm³/s</translation>
+    </message>
+    <message>
+        <source>MPa</source>
+        <translation>MPa</translation>
+    </message>
+    <message>
+        <source>in by %1</source>
+        <translation>entre par %1</translation>
+    </message>
+    <message>
+        <source>out by %1</source>
+        <translation>sort par %1</translation>
+    </message>
+    <message>
+        <source>%1 iterations; %2 of what enters is lost.</source>
+        <translation>%1 itérations ; %2 de ce qui entre se perd.</translation>
+    </message>
+</context>
+<context>
     <name>lamella::ui::Forecaster</name>
     <message>
         <source>Not known for one mesh of all bodies.</source>
@@ -1175,6 +1372,38 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
         <source>pick its faces in the view</source>
         <translation>désignez ses faces dans la vue</translation>
     </message>
+    <message>
+        <source>by its pressure</source>
+        <translation>par sa pression</translation>
+    </message>
+    <message>
+        <source>by its rate</source>
+        <translation>par son débit</translation>
+    </message>
+    <message>
+        <source>What is known of the flow that enters; the other one follows</source>
+        <translation>Ce que l&apos;on sait de l&apos;écoulement entrant ; l&apos;autre en résulte</translation>
+    </message>
+    <message>
+        <source>Flow</source>
+        <translation>Écoulement</translation>
+    </message>
+    <message>
+        <source>Of the flow through the gate</source>
+        <translation>De l&apos;écoulement par le seuil</translation>
+    </message>
+    <message>
+        <source>Flow through %1</source>
+        <translation>Écoulement par %1</translation>
+    </message>
+    <message>
+        <source> mm³/s</source>
+        <translation> mm³/s</translation>
+    </message>
+    <message>
+        <source> MPa</source>
+        <translation> MPa</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Journal</name>
@@ -1267,6 +1496,26 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
     <message>
         <source>not in this mesh</source>
         <translation>absent de ce maillage</translation>
+    </message>
+    <message>
+        <source>Velocity, mm/s</source>
+        <translation>Vitesse, mm/s</translation>
+    </message>
+    <message>
+        <source>Pressure, MPa</source>
+        <translation>Pression, MPa</translation>
+    </message>
+    <message>
+        <source>Shear rate, 1/s</source>
+        <translation>Taux de cisaillement, 1/s</translation>
+    </message>
+    <message>
+        <source>Flow indicator</source>
+        <translation>Indicateur d&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>known once the flow is solved</source>
+        <translation>connu une fois l&apos;écoulement résolu</translation>
     </message>
 </context>
 <context>
@@ -1558,10 +1807,6 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
         <translation>Enregistrer l&apos;étude</translation>
     </message>
     <message>
-        <source>Studies (*.lamella)</source>
-        <translation>Études (*.lamella)</translation>
-    </message>
-    <message>
         <source>Unsaved changes</source>
         <translation>Modifications non enregistrées</translation>
     </message>
@@ -1636,6 +1881,38 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
     <message>
         <source>Results</source>
         <translation>Résultats</translation>
+    </message>
+    <message>
+        <source>Flow</source>
+        <translation>Écoulement</translation>
+    </message>
+    <message>
+        <source>Saving…</source>
+        <translation>Enregistrement…</translation>
+    </message>
+    <message>
+        <source>Solving the flow…</source>
+        <translation>Résolution de l&apos;écoulement…</translation>
+    </message>
+    <message>
+        <source>Project (*.lamella)</source>
+        <translation>Projet (*.lamella)</translation>
+    </message>
+    <message>
+        <source>Project with copies of its parts, to hand on (*.lamella)</source>
+        <translation>Projet avec copies de ses pièces, à transmettre (*.lamella)</translation>
+    </message>
+    <message>
+        <source>Study as text, without meshes (*.json)</source>
+        <translation>Étude en texte, sans maillages (*.json)</translation>
+    </message>
+    <message>
+        <source>Link the parts</source>
+        <translation>Lier les pièces</translation>
+    </message>
+    <message>
+        <source>Keep copies of the parts</source>
+        <translation>Garder des copies des pièces</translation>
     </message>
 </context>
 <context>
@@ -1769,6 +2046,18 @@ ou des voisinages grandis dans le maillage, comme dans la thèse</translation>
     <message>
         <source>automatic: %1 to %2</source>
         <translation>auto : %1 à %2</translation>
+    </message>
+    <message>
+        <source>Longest over shortest size of an element. Solvers by finite volumes
+and Moldflow like 10 to 20; each halving costs about four times the
+nodes along the walls</source>
+        <translation>Plus grande taille d&apos;un élément sur la plus petite. Les solveurs à volumes finis
+et Moldflow préfèrent 10 à 20 ; chaque division par deux coûte environ quatre fois
+les nœuds le long des parois</translation>
+    </message>
+    <message>
+        <source>Anisotropy at most</source>
+        <translation>Anisotropie au plus</translation>
     </message>
 </context>
 <context>
@@ -2295,10 +2584,6 @@ Les barres croissent comme le logarithme du nombre</translation>
         <translation>%1 enregistré</translation>
     </message>
     <message>
-        <source>The mesh saved before is of other settings: it is %1 now.</source>
-        <translation>Le maillage enregistré avant est d&apos;autres réglages : il est maintenant %1.</translation>
-    </message>
-    <message>
         <source>Making the sample part “%1”</source>
         <translation>Création de la pièce d&apos;exemple « %1 »</translation>
     </message>
@@ -2393,6 +2678,22 @@ Les barres croissent comme le logarithme du nombre</translation>
     <message>
         <source>%1 overlaps and %2 gaps</source>
         <translation>%1 recouvrements et %2 jeux</translation>
+    </message>
+    <message>
+        <source>The study is open, but not all is as it was saved.</source>
+        <translation>L&apos;étude est ouverte, mais tout n&apos;est pas comme à l&apos;enregistrement.</translation>
+    </message>
+    <message>
+        <source>Saved, but not all of it.</source>
+        <translation>Enregistré, mais pas en entier.</translation>
+    </message>
+    <message>
+        <source>Solving the flow through %L1 nodes</source>
+        <translation>Résolution de l&apos;écoulement à travers %L1 nœuds</translation>
+    </message>
+    <message>
+        <source>Flow: %1 iterations, %2 mm³/s, %3 s</source>
+        <translation>Écoulement : %1 itérations, %2 mm³/s, %3 s</translation>
     </message>
 </context>
 <context>
@@ -2838,6 +3139,22 @@ Les propriétés du maillage ont ses réglages.</translation>
     <message>
         <source>Position of the cut</source>
         <translation>Position de la coupe</translation>
+    </message>
+    <message>
+        <source>Velocity</source>
+        <translation>Vitesse</translation>
+    </message>
+    <message>
+        <source>Pressure</source>
+        <translation>Pression</translation>
+    </message>
+    <message>
+        <source>Shear rate</source>
+        <translation>Taux de cisaillement</translation>
+    </message>
+    <message>
+        <source>Flow indicator</source>
+        <translation>Indicateur d&apos;écoulement</translation>
     </message>
 </context>
 <context>
