@@ -47,9 +47,6 @@ Result<Request> request_of(const MeshCommand& c, Console& console) {
     request.study.name = fs::path(c.inputs.front()).stem().string();
     for (const std::string& input : c.inputs) request.study.inputs.push_back({input});
     request.files.assign(c.inputs.begin(), c.inputs.end());
-    for (std::size_t k = 0; k < request.files.size(); ++k)
-      if (Result<void> known = identify(request.study.inputs[k], request.files[k]); !known)
-        return of_input(known.error());
   }
   if (c.unit)
     for (StudyInput& input : request.study.inputs) input.unit = unit_factor(*c.unit);
@@ -87,6 +84,10 @@ Result<Request> request_of(const MeshCommand& c, Console& console) {
     request.study.groups.push_back(std::move(*group));
   }
   if (Result<void> added = add_flow(c, request.study); !added) return added.error();
+  // Last: what is wrong with the command is told before what is wrong with its files.
+  for (std::size_t k = 0; studies == 0 && k < request.files.size(); ++k)
+    if (Result<void> known = identify(request.study.inputs[k], request.files[k]); !known)
+      return of_input(known.error());
   return request;
 }
 

@@ -1,15 +1,8 @@
 #include "ui/main_window.h"
 
 #include <QAbstractButton>
-#include <QCloseEvent>
-#include <QDragEnterEvent>
-#include <QEventLoop>
-#include <QFileDialog>
-#include <QFileInfo>
 #include <QLabel>
 #include <QMenuBar>
-#include <QMessageBox>
-#include <QMimeData>
 #include <QProgressBar>
 #include <QSplitter>
 #include <QStackedWidget>
@@ -34,7 +27,6 @@
 #include "ui/panels/study_panel.h"
 #include "ui/panels/welcome.h"
 #include "ui/session/forecaster.h"
-#include "ui/session/recent_files.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 #include "ui/units.h"
@@ -48,29 +40,6 @@ namespace {
 QString duration(double seconds) {
   const int s = static_cast<int>(std::lround(seconds));
   return QString("%1:%2").arg(s / 60).arg(s % 60, 2, 10, QChar('0'));
-}
-
-bool is_study(const QString& file) { return names_study(file.toStdString()); }
-
-bool is_mesh(const QString& file, const MeshFormats& formats) {
-  const Result<const MeshFormat*> format = formats.of_file(file.toStdString());
-  return format && (*format)->read;
-}
-
-/// "*.msh *.vtu ..": what can be read as a mesh.
-QString mesh_patterns(const MeshFormats& formats) {
-  QStringList patterns;
-  for (const MeshFormat& format : formats.all())
-    for (const std::string& ending : format.endings)
-      if (format.read) patterns << "*" + QString::fromStdString(ending);
-  return patterns.join(' ');
-}
-
-QStringList local_files(const QMimeData* data) {
-  QStringList files;
-  for (const QUrl& url : data->urls())
-    if (url.isLocalFile()) files << url.toLocalFile();
-  return files;
 }
 
 }  // namespace
@@ -515,77 +484,6 @@ void MainWindow::report_run() {
                              "smaller smallest size at blades, help."));
 }
 
-void MainWindow::open_files(const QStringList& files, bool add) {
-  if (files.isEmpty()) return;
-  banner_->hide();
-  if (!add && !may_drop()) return;
-  folder_ = QFileInfo(files.front()).absolutePath();
-  for (const QString& file : files) remember_file(file);
-  if (is_study(files.front())) {
-    session_->open_study(std::filesystem::absolute(files.front().toStdString()));
-    return;
-  }
-  if (is_mesh(files.front(), session_->services().formats)) {
-    session_->open_mesh(files.front().toStdString());
-    return;
-  }
-  std::vector<std::filesystem::path> paths;
-  for (const QString& file : files) paths.emplace_back(file.toStdString());
-  session_->open(paths, add);
-}
-
-void MainWindow::ask_open(bool add) {
-  const QStringList files =
-      QFileDialog::getOpenFileNames(this, add ? tr("Add bodies") : tr("Open"), folder_,
-                                    add ? tr("Parts (*.step *.stp *.stl *.STEP *.STP *.STL)")
-                                        : tr("Studies and parts (*.lamella *.json *.step *.stp "
-                                             "*.stl *.STEP *.STP *.STL);;Meshes (%1);;All "
-                                             "files (*)")
-                                              .arg(mesh_patterns(session_->services().formats)));
-  open_files(files, add);
-}
-
-bool MainWindow::save(bool ask_name) {
-  QString file = QString::fromStdString(session_->file().string());
-  if (file.isEmpty() || ask_name || !is_study(file)) {
-    const QStringList kinds = {tr("Project (*.lamella)"),
-                               tr("Project with copies of its parts, to hand on (*.lamella)"),
-                               tr("Study as text, without meshes (*.json)")};
-    const bool copies = session_->study().embed_inputs;
-    QString kind = kinds[copies ? 1 : 0];
-    const QString name = QString::fromStdString(session_->study().name) + ".lamella";
-    file = QFileDialog::getSaveFileName(this, tr("Save study"),
-                                        folder_.isEmpty() ? name : folder_ + "/" + name,
-                                        kinds.join(";;"), &kind);
-    if (file.isEmpty()) return false;
-    if (QFileInfo(file).suffix().isEmpty()) file += kind == kinds[2] ? ".json" : ".lamella";
-    if (kind != kinds[2] && copies != (kind == kinds[1])) {
-      Study study = session_->study();
-      study.embed_inputs = !copies;
-      session_->edit(copies ? tr("Link the parts") : tr("Keep copies of the parts"),
-                     std::move(study));
-    }
-  }
-  session_->save(file.toStdString());
-  // Whoever closes the window waits for its file.
-  QEventLoop loop;
-  connect(session_, &Session::activity_changed, &loop, &QEventLoop::quit);
-  if (session_->activity() == Activity::saving) loop.exec();
-  return !session_->modified();
-}
-
-bool MainWindow::may_drop() {
-  if (!session_->modified()) return true;
-  QMessageBox box(QMessageBox::Question, tr("Unsaved changes"),
-                  tr("The study “%1” has changes that are not saved.")
-                      .arg(QString::fromStdString(session_->study().name)),
-                  QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
-  box.setInformativeText(tr("Save them?"));
-  box.setDefaultButton(QMessageBox::Save);
-  const int answer = box.exec();
-  return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save(false));
-}
-
 void MainWindow::add_size(Act kind) {
   const int part = std::max(0, session_->selected());
   const Part& body = session_->shapes()[static_cast<std::size_t>(part)];
@@ -651,74 +549,6 @@ void MainWindow::start_run() {
   banner_->hide();
   results_->setCurrentIndex(0);
   session_->run();
-}
-
-void MainWindow::ask_export() {
-  const QString name = QString::fromStdString(session_->study().name) + ".msh";
-  QStringList kinds;
-  for (const MeshFormat& format : session_->services().formats.all()) {
-    QStringList patterns;
-    for (const std::string& ending : format.endings)
-      patterns << "*" + QString::fromStdString(ending);
-    kinds << QString("%1 (%2)").arg(QString::fromStdString(format.title), patterns.join(' '));
-  }
-  QString kind;
-  QString file = QFileDialog::getSaveFileName(this, tr("Export mesh"),
-                                              folder_.isEmpty() ? name : folder_ + "/" + name,
-                                              kinds.join(";;"), &kind);
-  if (file.isEmpty()) return;
-  // A name without an ending gets the one of the chosen kind.
-  if (const auto chosen = kinds.indexOf(kind); chosen >= 0 && QFileInfo(file).suffix().isEmpty())
-    file += QString::fromStdString(
-        session_->services().formats.all()[std::size_t(chosen)].endings.front());
-  banner_->hide();
-  session_->export_mesh(file.toStdString());
-}
-
-void MainWindow::ask_picture() {
-  const QSize seen = view_->vtk_view() ? view_->vtk_view()->size() * devicePixelRatioF() : QSize();
-  const auto wide = [&](int width) {
-    return QSize(width, seen.width() > 0 ? width * seen.height() / seen.width() : width);
-  };
-  const QSize sizes[] = {seen, wide(1920), wide(3840), wide(7680)};
-  QStringList kinds;
-  for (const QSize& size : sizes)
-    kinds << tr("PNG, %1 × %2 pixels (*.png)").arg(size.width()).arg(size.height());
-  const QString name = QString::fromStdString(session_->study().name) + ".png";
-  QString kind;
-  QString file = QFileDialog::getSaveFileName(this, tr("Save picture"),
-                                              folder_.isEmpty() ? name : folder_ + "/" + name,
-                                              kinds.join(";;"), &kind);
-  if (file.isEmpty()) return;
-  if (QFileInfo(file).suffix().isEmpty()) file += ".png";
-  const auto chosen = std::max<qsizetype>(0, kinds.indexOf(kind));
-  const QImage image = chosen == 0 ? view_->picture() : view_->picture(sizes[chosen]);
-  if (image.save(file)) {
-    banner_->show_message(Banner::Kind::done, tr("Picture written"), file);
-  } else {
-    banner_->show_message(Banner::Kind::error, tr("%1 could not be written.").arg(file),
-                          tr("Is the folder writable, and does the name end in .png?"));
-  }
-}
-
-void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-  if (session_->activity() != Activity::idle || local_files(event->mimeData()).isEmpty()) return;
-  event->acceptProposedAction();
-  welcome_->set_dragging(true);
-}
-
-void MainWindow::dragLeaveEvent(QDragLeaveEvent*) { welcome_->set_dragging(false); }
-
-void MainWindow::dropEvent(QDropEvent* event) {
-  welcome_->set_dragging(false);
-  event->acceptProposedAction();
-  open_files(local_files(event->mimeData()));
-}
-
-void MainWindow::closeEvent(QCloseEvent* event) {
-  if (!may_drop()) return event->ignore();
-  session_->cancel();
-  event->accept();
 }
 
 }  // namespace lamella::ui

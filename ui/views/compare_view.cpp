@@ -6,7 +6,6 @@
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QLabel>
-#include <QTimer>
 #include <algorithm>
 
 #include "ui/panels/form.h"
@@ -49,13 +48,14 @@ CompareView::CompareView(Session& session, VtkView& main, QWidget* parent)
   row->setSpacing(8);
   layout->addLayout(row);
   view_ = new VtkView;
-  view_->renderer()->SetActiveCamera(main.renderer()->GetActiveCamera());
+  view_->renderer()->GetActiveCamera()->DeepCopy(main.renderer()->GetActiveCamera());
   scene_ = std::make_unique<Scene>(*view_->renderer());
   overlay_ = new Overlay(*view_);
   overlay_->set_scale_visible(true);
   layout->addWidget(view_, 1);
-  link(*view_, main_, 1);
-  link(main_, *view_, 0);
+  agreed_ = seen_by(*main.renderer()->GetActiveCamera());
+  link(*view_, main_);
+  link(main_, *view_);
   connect(which_, &QComboBox::currentIndexChanged, this, &CompareView::follow_mesh);
   connect(&session, &Session::iterations_changed, this, &CompareView::follow_iterations);
   connect(&session, &Session::shown_changed, this, &CompareView::follow_mesh);
@@ -64,15 +64,16 @@ CompareView::CompareView(Session& session, VtkView& main, QWidget* parent)
 
 CompareView::~CompareView() = default;
 
-void CompareView::link(VtkView& drawn, VtkView& other, std::size_t which) {
-  connect(&drawn, &VtkView::rendered, this, [this, &drawn, &other, which] {
-    // The camera is the same: only one that has moved since is news to the other view.
-    const std::array<double, 11> now = seen_by(*drawn.renderer()->GetActiveCamera());
-    const bool moved = now != drawn_[which];
-    drawn_[which] = now;
-    // Later, so that two views that follow each other leave the event loop its turn.
-    if (moved && drawn_[1 - which] != now)
-      QTimer::singleShot(10, &other, [&other] { other.update(); });
+void CompareView::link(VtkView& drawn, VtkView& other) {
+  connect(&drawn, &VtkView::rendered, this, [this, &drawn, &other] {
+    // Each has a camera of its own: what one does to the depth range must not call for the other.
+    vtkCamera* from = drawn.renderer()->GetActiveCamera();
+    vtkCamera* to = other.renderer()->GetActiveCamera();
+    if (const auto now = seen_by(*from); now != agreed_) {
+      agreed_ = now;
+      to->DeepCopy(from);
+      other.update();
+    }
     if (&drawn == view_ && scene_->set_pixel_size(view_->pixel_size())) view_->update();
   });
 }

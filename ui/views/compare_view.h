@@ -34,7 +34,7 @@ class CompareView : public QFrame {
  private:
   void follow_iterations();
   void follow_mesh();
-  void link(VtkView& drawn, VtkView& other, std::size_t which);
+  void link(VtkView& drawn, VtkView& other);
 
   Session& session_;
   VtkView& main_;
@@ -43,7 +43,7 @@ class CompareView : public QFrame {
   Overlay* overlay_;
   std::unique_ptr<Scene> scene_;
   std::shared_ptr<const MeshState> shown_;
-  std::array<std::array<double, 11>, 2> drawn_{};  // the camera of each view's last picture
+  std::array<double, 11> agreed_{};  // the camera of both, until one of them is drawn with another
 };
 
 }  // namespace lamella::ui

@@ -149,10 +149,7 @@ void ModelView::connect_actions() {
   for (const Act act : {Act::flow_arrows, Act::flow_lines, Act::flow_levels})
     connect(actions_[act], &QAction::toggled, this, [this] {
       if (!scene_) return;
-      const FlowLook look{actions_[Act::flow_arrows]->isChecked(),
-                          actions_[Act::flow_lines]->isChecked(),
-                          actions_[Act::flow_levels]->isChecked()};
-      each_scene([&look](Scene& s) { s.set_flow(look); });
+      each_scene([look = flow_look()](Scene& s) { s.set_flow(look); });
       refresh();
     });
   connect(actions_[Act::compare], &QAction::toggled, this, &ModelView::compare);
@@ -217,6 +214,11 @@ void ModelView::each_scene(const std::function<void(Scene&)>& change) {
   if (compare_) change(compare_->scene());
 }
 
+FlowLook ModelView::flow_look() const {
+  return {actions_[Act::flow_arrows]->isChecked(), actions_[Act::flow_lines]->isChecked(),
+          actions_[Act::flow_levels]->isChecked()};
+}
+
 void ModelView::compare(bool on) {
   if (!scene_ || on == (compare_ != nullptr)) return;
   if (!on) {
@@ -234,6 +236,7 @@ void ModelView::compare(bool on) {
   groups_shown_.clear();
   follow_study();
   other.set_sections(sections_);
+  other.set_flow(flow_look());
   sides_->insertWidget(0, compare_);
   sides_->setSizes({sides_->width() / 2, sides_->width() / 2});
   refresh();

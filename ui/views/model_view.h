@@ -84,6 +84,7 @@ class ModelView : public QWidget {
   void follow_groups();
   /// Name of the body whose filling is shown: the selected one.
   std::string choose_filled();
+  FlowLook flow_look() const;
   void compare(bool on);
   /// Does the same to what either view draws.
   void each_scene(const std::function<void(Scene&)>& change);

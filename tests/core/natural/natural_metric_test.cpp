@@ -210,7 +210,7 @@ TEST(NaturalMetric, ABoundOfAnisotropyShortensTheLongAxesOnly) {
   for (const Vec<3>& x : {Vec<3>(0.5, 0.5, 0.01), Vec<3>(0.3, 0.7, 0), Vec<3>(0.6, 0.2, 0.015)}) {
     const Vec<3> before = sizes<3>(detector.at(x, free).metric);
     const Vec<3> after = sizes<3>(detector.at(x, bound).metric);
-    ASSERT_GT(before[2], 20 * before[0]);
+    ASSERT_GT(before[2], 15 * before[0]);
     EXPECT_NEAR(after[0], before[0], 1e-9);
     EXPECT_NEAR(after[1], 10 * before[0], 1e-9);
     EXPECT_NEAR(after[2], 10 * before[0], 1e-9);

@@ -26,7 +26,7 @@ Study full_study() {
   study.bodies[1].flow = false;
   study.flow = StudyFlow{FlowMethod::residual, 2, 0.5, 1.25, 3, 100};
   study.cuts = {{"middle", {1, 2, 3.25}, {0, 0.6, -0.8}, false}};
-  study.options = {0.02, 0.2,   9,  3, 12345678901234567890u, Detector::neighborhood,
+  study.options = {0.02, 12.5,  0.2, 9, 3, 12345678901234567890u, Detector::neighborhood,
                    true, false, 512};
   return study;
 }
@@ -83,6 +83,7 @@ TEST(StudyFile, ReadsBackWhatItWrote) {
   EXPECT_EQ(back->options.threads, 3);
   EXPECT_EQ(back->options.seed, 12345678901234567890u);
   EXPECT_EQ(back->options.detector, Detector::neighborhood);
+  EXPECT_EQ(back->options.max_anisotropy, 12.5);
   EXPECT_TRUE(back->options.progressive);
   EXPECT_EQ(back->options.memory, study.options.memory);
   EXPECT_FALSE(back->options.until_settled);
