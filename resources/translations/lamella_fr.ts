@@ -573,11 +573,11 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <translation>Ce qui entoure les corps dans le domaine</translation>
     </message>
     <message>
-        <source>automatic: %1</source>
+        <source>auto: %1</source>
         <translation>auto : %1</translation>
     </message>
     <message>
-        <source>automatic: %1 to %2</source>
+        <source>auto: %1 to %2</source>
         <translation>auto : %1 à %2</translation>
     </message>
     <message>
@@ -585,8 +585,8 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <translation>sans limite</translation>
     </message>
     <message>
-        <source>automatic: 1/4 of a layer</source>
-        <translation>automatique : 1/4 de couche</translation>
+        <source>auto: 1/4 of a layer</source>
+        <translation>auto : 1/4 de couche</translation>
     </message>
     <message>
         <source>different</source>
@@ -2040,11 +2040,11 @@ ou des voisinages grandis dans le maillage, comme dans la thèse</translation>
         <translation>Détecteur d&apos;épaisseur</translation>
     </message>
     <message>
-        <source>automatic: %1</source>
+        <source>auto: %1</source>
         <translation>auto : %1</translation>
     </message>
     <message>
-        <source>automatic: %1 to %2</source>
+        <source>auto: %1 to %2</source>
         <translation>auto : %1 à %2</translation>
     </message>
     <message>

@@ -314,8 +314,8 @@ TEST_F(MainWindowTest, MeshSettingsReachTheStudyAndSayWhatAutomaticIs) {
   open("box.stl");
   auto* chord = window_.findChild<LengthBox*>("chord_tolerance");
   // The box is 30 x 20 x 4: 1/1000 of its diagonal is 0.0363.
-  EXPECT_EQ(chord->text(), "automatic: 0.0363 mm");
-  EXPECT_EQ(window_.findChild<LengthBox*>("h_min")->text(), "automatic: 0.0363 mm");
+  EXPECT_EQ(chord->text(), "auto: 0.0363 mm");
+  EXPECT_EQ(window_.findChild<LengthBox*>("h_min")->text(), "auto: 0.0363 mm");
   EXPECT_EQ(window_.findChild<LengthBox*>("h_max")->text(), "no bound");
   chord->setValue(0.1);
   window_.findChild<LengthBox*>("h_max")->setValue(3);

@@ -347,7 +347,7 @@ TEST_F(MultidomainTest, MixedElementsAndTheirErrorAreTold) {
   EXPECT_EQ(last[titles.indexOf("interface_error")].toDouble(), 0.25);
   // What the run took for automatic is told where another one can be asked for.
   session().select(0);
-  EXPECT_EQ(find<LengthBox>("interface_size")->text(), "automatic: 0.125 mm");
+  EXPECT_EQ(find<LengthBox>("interface_size")->text(), "auto: 0.125 mm");
 }
 
 TEST_F(MultidomainTest, OverlapsAreMeasuredAndShown) {

@@ -213,12 +213,12 @@ void BodyPage::show_automatic() {
   }
   h_min_->set_automatic(
       short_length(low) == short_length(high)
-          ? tr("automatic: %1").arg(units::length(low, 3))
-          : tr("automatic: %1 to %2").arg(short_length(low), units::length(high, 3)),
+          ? tr("auto: %1").arg(units::length(low, 3))
+          : tr("auto: %1 to %2").arg(short_length(low), units::length(high, 3)),
       low);
   h_max_->set_automatic(tr("no bound"), 200 * low);
   // A run has found out what automatic means.
-  QString automatic = tr("automatic: 1/4 of a layer");
+  QString automatic = tr("auto: 1/4 of a layer");
   double start = low;
   const auto& outcome = session_.outcome();
   if (outcome && session_.selection().size() == 1)
@@ -226,7 +226,7 @@ void BodyPage::show_automatic() {
       if (made.name == session_.body(session_.selection().front()).name &&
           made.interface_size > 0 && !session_.body(session_.selection().front()).interface_size) {
         start = made.interface_size;
-        automatic = tr("automatic: %1").arg(units::length(start, 3));
+        automatic = tr("auto: %1").arg(units::length(start, 3));
       }
   interface_->set_automatic(automatic, start);
 }

@@ -120,6 +120,7 @@ QWidget* FlowPanel::make_settings() {
   row->setContentsMargins(0, 0, 0, 0);
   weight_ = new QSlider(Qt::Horizontal);
   weight_->setObjectName("flow_weight");
+  weight_->setAccessibleName(tr("Strength"));
   weight_->setRange(-kSteps, kSteps);
   row->addWidget(weight_, 1);
   weight_text_ = styled_label({}, "soft");

@@ -67,6 +67,7 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   given_->setToolTip(tr("What is known of the flow that enters; the other one follows"));
   form->add(tr("Flow"), given_);
   value_ = number_box(1e-3, 1e9, 1, "gate_value", tr("Of the flow through the gate"));
+  value_->setAccessibleName(tr("Flow"));
   value_->setDecimals(3);
   form->add({}, value_);
   rows_ = form;

@@ -57,7 +57,7 @@ struct Scene::Impl {
   bool edges = true;
   bool crinkle = true;
   bool features = true;
-  std::size_t shown = 0;
+  std::size_t shown = 0, whole = 0;  // elements drawn, and of `skin`
   Legend legend;
   Legend wall_legend;  // of the parts
   std::array<double, 6> bounds{1, -1, 1, -1, 1, -1};
@@ -191,9 +191,12 @@ struct Scene::Impl {
       mesh_mapper->SetInputData(skins.skin(planes));
       shown = skins.elements();
     } else {
-      if (!skin) skin = skins.skin({});
+      if (!skin) {
+        skin = skins.skin({});
+        whole = skins.elements();
+      }
       mesh_mapper->SetInputData(skin);
-      shown = skins.elements();
+      shown = whole;
       if (!cuts.empty()) cut_through();
     }
     mesh_edge = typical_edge(*mesh_mapper->GetInput());
