@@ -67,9 +67,9 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   given_->setToolTip(tr("What is known of the flow that enters; the other one follows"));
   form->add(tr("Flow"), given_);
   value_ = number_box(1e-3, 1e9, 1, "gate_value", tr("Of the flow through the gate"));
-  value_->setAccessibleName(tr("Flow"));
   value_->setDecimals(3);
   form->add({}, value_);
+  value_->setAccessibleName(tr("Flow"));
   rows_ = form;
   body_ = styled_label({}, "soft");
   form->add(tr("Body"), body_);
