@@ -398,7 +398,8 @@ std::vector<std::string> unmatched(const Study& study, const std::vector<Part>& 
   };
   for (const BodySettings& body : study.bodies)
     if (!is_body(body.name))
-      notes.push_back("There is no body \"" + body.name + "\" any more: its settings are left out.");
+      notes.push_back("There is no body \"" + body.name +
+                      "\" any more: its settings are left out.");
   const auto look = [&](const std::string& who, const std::string& body,
                         const std::vector<std::int32_t>& ids,
                         const std::vector<std::string>& names) {

@@ -211,11 +211,10 @@ void BodyPage::show_automatic() {
     low = std::min(low, session_.automatic_size(k));
     high = std::max(high, session_.automatic_size(k));
   }
-  h_min_->set_automatic(
-      short_length(low) == short_length(high)
-          ? tr("auto: %1").arg(units::length(low, 3))
-          : tr("auto: %1 to %2").arg(short_length(low), units::length(high, 3)),
-      low);
+  h_min_->set_automatic(short_length(low) == short_length(high)
+                            ? tr("auto: %1").arg(units::length(low, 3))
+                            : tr("auto: %1 to %2").arg(short_length(low), units::length(high, 3)),
+                        low);
   h_max_->set_automatic(tr("no bound"), 200 * low);
   // A run has found out what automatic means.
   QString automatic = tr("auto: 1/4 of a layer");

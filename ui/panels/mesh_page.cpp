@@ -129,8 +129,7 @@ void MeshPage::refresh() {
   const QString most = units::length(high, 3);
   if (high > 0)
     chord_->set_automatic(
-        least == most ? tr("auto: %1").arg(least) : tr("auto: %1 to %2").arg(least, most),
-        low);
+        least == most ? tr("auto: %1").arg(least) : tr("auto: %1 to %2").arg(least, most), low);
   const StudyOptions& o = session_.study().options;
   chord_->set_length(o.chord_tolerance);
   iterations_->setValue(o.iterations);
