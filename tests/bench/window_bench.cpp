@@ -1,21 +1,23 @@
-// The window with a million elements, as figures. Not for ctest: they depend on the machine.
-//   lamella_ui_tests --gtest_also_run_disabled_tests --gtest_filter='*Figures*'
-#include <gtest/gtest.h>
-
+// The window with a million elements: seconds, frames, and how long the event loop is held.
+#include <QApplication>
 #include <QElapsedTimer>
+#include <QLocale>
+#include <QStandardPaths>
 #include <QTest>
 #include <QTimer>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <thread>
 
 #include "app/window_services.h"
 #include "core/cad/sample_parts.h"
 #include "core/mesh/sample_meshes.h"
-#include "tests/support/fake_services.h"
 #include "tests/support/temporary_folder.h"
 #include "ui/actions/actions.h"
 #include "ui/main_window.h"
 #include "ui/session/session.h"
+#include "ui/theme.h"
 #include "ui/views/model_view.h"
 #include "ui/views/vtk_view.h"
 
@@ -60,44 +62,65 @@ class Heartbeat {
   qint64 longest_ = 0;
 };
 
-class DISABLED_Figures : public testing::Test {
- protected:
-  DISABLED_Figures() : services_(window_services(folder_.path())) {}
+/// A figure that was not measured must not be printed.
+void require(bool fine, const char* what) {
+  if (fine) return;
+  std::fprintf(stderr, "failed: %s\n", what);
+  std::exit(1);
+}
 
-  static bool wait_idle(MainWindow& window) {
-    return QTest::qWaitFor([&] { return window.session().activity() == Activity::idle; }, 600000);
-  }
-  /// Seconds until the view has drawn what `change` asks for.
-  static double drawn(VtkView& view, const std::function<void()>& change) {
-    bool done = false;
-    const auto link = QObject::connect(&view, &VtkView::rendered, &view, [&] { done = true; });
-    QElapsedTimer clock;
-    clock.start();
-    change();
-    EXPECT_TRUE(QTest::qWaitFor([&] { return done; }, 60000));
-    QObject::disconnect(link);
-    return static_cast<double>(clock.nsecsElapsed()) * 1e-9;
-  }
+void wait_idle(MainWindow& window) {
+  require(QTest::qWaitFor([&] { return window.session().activity() == Activity::idle; }, 600000),
+          "waiting for the window to be idle");
+}
 
-  test::TemporaryFolder folder_;
-  Services services_;
-};
-
-TEST_F(DISABLED_Figures, AMillionElements) {
-  const auto state = million();
-  const auto file = folder_ / "million.vtu";
-  ASSERT_TRUE(services_.export_mesh(file, *state, Study{}));
-  MainWindow window(services_);
-  window.resize(1700, 1300);
+void show(MainWindow& window) {
   window.show();
-  ASSERT_TRUE(QTest::qWaitForWindowExposed(&window));
+  require(QTest::qWaitForWindowExposed(&window), "showing the window");
+}
+
+/// Seconds until the view has drawn what `change` asks for.
+double drawn(VtkView& view, const std::function<void()>& change) {
+  bool done = false;
+  const auto link = QObject::connect(&view, &VtkView::rendered, &view, [&] { done = true; });
+  QElapsedTimer clock;
+  clock.start();
+  change();
+  require(QTest::qWaitFor([&] { return done; }, 60000), "drawing");
+  QObject::disconnect(link);
+  return static_cast<double>(clock.nsecsElapsed()) * 1e-9;
+}
+
+/// Milliseconds that the event loop is held at most while a sample part is meshed.
+long long held_by_a_run(const Services& services, const std::filesystem::path& folder) {
+  const auto part = folder / "part.step";
+  require(write_sample("t_junction", part).ok(), "writing the part");
+  MainWindow window(services);
+  show(window);
+  window.open_files({QString::fromStdString(part.string())});
+  wait_idle(window);
+  QTest::qWait(300);
+  Heartbeat heart;
+  window.session().run();
+  wait_idle(window);
+  QTest::qWait(300);
+  return heart.longest();
+}
+
+void million_elements(const Services& services, const std::filesystem::path& folder) {
+  const auto state = million();
+  const auto file = folder / "million.vtu";
+  require(services.export_mesh(file, *state, Study{}).ok(), "writing the mesh");
+  MainWindow window(services);
+  window.resize(1700, 1300);
+  show(window);
   VtkView& view = *window.view().vtk_view();
   QElapsedTimer clock;
   clock.start();
   window.open_files({QString::fromStdString(file.string())});
-  ASSERT_TRUE(wait_idle(window));
-  const double opened =
-      drawn(view, [&] { view.update(); }) + static_cast<double>(clock.nsecsElapsed()) * 1e-9;
+  wait_idle(window);
+  drawn(view, [&] { view.update(); });
+  const double opened = static_cast<double>(clock.nsecsElapsed()) * 1e-9;
   std::printf("%zu elements\nopening: %.2f s\n", state->mesh.elements.size(), opened);
 
   view.setFixedSize(1280, 800);
@@ -135,11 +158,11 @@ TEST_F(DISABLED_Figures, AMillionElements) {
 }
 
 /// A run that hands over three meshes of a million elements, edges on.
-TEST_F(DISABLED_Figures, EventLoopWhileMeshesOfAMillionElementsArrive) {
+Services with_million_meshes(Services services) {
   std::vector<std::shared_ptr<const MeshState>> states;
   for (int k = 0; k < 3; ++k) states.push_back(million());
-  services_.run = [&](const Study&, const std::vector<Part>&, const auto&, const Progress& progress,
-                      const IterationSink& sink) -> Result<Outcome> {
+  services.run = [states](const Study&, const std::vector<Part>&, const auto&,
+                          const Progress& progress, const IterationSink& sink) -> Result<Outcome> {
     Outcome outcome;
     for (int k = 0; k < 3; ++k) {
       IterationRecord record;
@@ -157,38 +180,24 @@ TEST_F(DISABLED_Figures, EventLoopWhileMeshesOfAMillionElementsArrive) {
     outcome.converged = true;
     return outcome;
   };
-  const auto part = folder_ / "plate.step";
-  ASSERT_TRUE(write_sample("plate", part));
-  MainWindow window(services_);
-  window.show();
-  ASSERT_TRUE(QTest::qWaitForWindowExposed(&window));
-  window.open_files({QString::fromStdString(part.string())});
-  ASSERT_TRUE(wait_idle(window));
-  QTest::qWait(300);
-  Heartbeat heart;
-  window.session().run();
-  ASSERT_TRUE(wait_idle(window));
-  QTest::qWait(300);
-  std::printf("event loop held at most %lld ms while meshes of a million elements arrive\n",
-              static_cast<long long>(heart.longest()));
-}
-
-TEST_F(DISABLED_Figures, EventLoopDuringARun) {
-  const auto part = folder_ / "tray.step";
-  ASSERT_TRUE(write_sample("t_junction", part));
-  MainWindow window(services_);
-  window.show();
-  ASSERT_TRUE(QTest::qWaitForWindowExposed(&window));
-  window.open_files({QString::fromStdString(part.string())});
-  ASSERT_TRUE(wait_idle(window));
-  QTest::qWait(300);
-  Heartbeat heart;
-  window.session().run();
-  ASSERT_TRUE(wait_idle(window));
-  QTest::qWait(300);
-  std::printf("event loop held at most %lld ms during a run\n",
-              static_cast<long long>(heart.longest()));
+  return services;
 }
 
 }  // namespace
 }  // namespace lamella::ui
+
+int main(int argc, char** argv) {
+  using namespace lamella::ui;
+  QStandardPaths::setTestModeEnabled(true);
+  QLocale::setDefault(QLocale(QLocale::English));
+  QSurfaceFormat::setDefaultFormat(VtkView::format());
+  QApplication application(argc, argv);
+  apply_theme(application);
+  const lamella::test::TemporaryFolder folder;
+  const Services services = lamella::window_services(folder.path());
+  million_elements(services, folder.path());
+  std::printf("event loop held at most %lld ms while meshes of a million elements arrive\n",
+              held_by_a_run(with_million_meshes(services), folder.path()));
+  std::printf("event loop held at most %lld ms during a run\n",
+              held_by_a_run(services, folder.path()));
+}
