@@ -11,8 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_project(const std::string& output) { return fs::path(output).extension() == ".lamella"; }
-
 void tell_iteration(const IterationRecord& r, Console& console) {
   if (r.iteration == 0 && r.forecast_nodes > 0)
     console.say("about " + grouped(static_cast<std::size_t>(r.forecast_nodes)) + " nodes and " +
@@ -132,13 +130,6 @@ Result<void> check_output(const std::string& output) {
 
 std::string report_stem(const std::string& output) {
   return fs::path(output).replace_extension(".report").string();
-}
-
-std::vector<InputFile> inputs_of(const Study& study) {
-  std::vector<InputFile> inputs;
-  for (const StudyInput& input : study.inputs)
-    inputs.push_back({fs::path(input.file).filename().string(), input.bytes, input.sha256});
-  return inputs;
 }
 
 void tell_notes(const std::vector<std::string>& notes, Console& console) {

@@ -33,9 +33,6 @@ Result<void> check_output(const std::string& output);
 /// Where the report of a mesh file is, without its ending.
 std::string report_stem(const std::string& output);
 
-/// The inputs of a study that was opened, as reports and meshes name them.
-std::vector<InputFile> inputs_of(const Study& study);
-
 void tell_notes(const std::vector<std::string>& notes, Console& console);
 void tell_parts(const std::vector<Part>& parts, const Study& study, Console& console);
 

@@ -92,10 +92,14 @@ Result<Request> request_of(const MeshCommand& c, Console& console) {
 }
 
 /// Options of the command line hold for every body.
-void apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study& study) {
+Result<void> apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study& study) {
   std::vector<std::string> names;
   for (const Part& part : parts) names.push_back(part.name);
   for (const StudyZone& zone : study.zones) names.push_back(zone.name);
+  for (const std::string& asked : c.flow_bodies)
+    if (std::count(names.begin(), names.end(), asked) == 0)
+      return Error{Code::usage, "--flow-body: there is no body \"" + asked + "\".",
+                   "`info` lists the bodies of a file."};
   std::vector<BodySettings> bodies;
   for (const std::string& name : names) {
     BodySettings body = settings_of(study, name);
@@ -114,6 +118,7 @@ void apply_to_bodies(const MeshCommand& c, const std::vector<Part>& parts, Study
   for (const BodySettings& other : study.bodies)
     if (std::count(names.begin(), names.end(), other.name) == 0) bodies.push_back(other);
   study.bodies = std::move(bodies);
+  return {};
 }
 
 /// The end of `mesh --forecast`.
@@ -160,7 +165,8 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
   Result<std::vector<Part>> parts =
       load_all(request->files, study, load, progress.portion(0, 0.05));
   if (!parts) return console.fail(parts.error());
-  apply_to_bodies(c, *parts, study);
+  if (Result<void> applied = apply_to_bodies(c, *parts, study); !applied)
+    return console.fail(applied.error());
 
   Job job;
   job.command = line;

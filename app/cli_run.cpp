@@ -43,8 +43,9 @@ std::string numbered(const fs::path& file, std::size_t k) {
 std::optional<Row> row_of(const std::string& report, const Study& study,
                           const std::optional<double>& min_quality) {
   const Json json = Json::parse(report, nullptr, false);
-  if (!json.is_object() || json.value("program", "") != "Lamella " + version()) return {};
   try {
+    if (!json.is_object() || json.at("program").get<std::string>() != "Lamella " + version())
+      return {};
     const Result<Study> made = study_from_json(json.at("study").dump(), "report");
     if (!made || mesh_key(*made) != mesh_key(study) || json.at("cancelled").get<bool>()) return {};
     const double worst = json.at("quality").at("min").get<double>();
@@ -137,18 +138,19 @@ class StudyRun {
     return {};
   }
 
-  /// The parts, unless those that are there have these tolerances.
+  /// The parts, unless those that are there are of these tolerances, with the same ones left out.
   Result<void> load(const Study& study, const Progress& progress) {
     LoadParams params;
     params.chord_tolerance = study.options.chord_tolerance;
     params.angle_tolerance = study.options.angle_tolerance;
     if (loaded_ && loaded_->chord_tolerance == params.chord_tolerance &&
-        loaded_->angle_tolerance == params.angle_tolerance)
+        loaded_->angle_tolerance == params.angle_tolerance && left_out_ == study.left_out)
       return {};
     Result<std::vector<Part>> parts = load_all(project_.files, study, params, progress);
     if (!parts) return parts.error();
     parts_ = std::move(*parts);
     loaded_ = params;
+    left_out_ = study.left_out;
     return {};
   }
 
@@ -162,7 +164,7 @@ class StudyRun {
     bool in_project = false;
     for (const std::string& output : outputs_) {
       job.outputs.push_back(sweep ? numbered(output, k + 1) : output);
-      in_project = in_project || fs::path(output).extension() == ".lamella";
+      in_project = in_project || is_project(output);
     }
     if (!in_project) job.report = report_stem(job.outputs.front());
     tell_combination(k, job);
@@ -202,7 +204,7 @@ class StudyRun {
     std::string report;
     for (const std::string& output : job.outputs) {
       if (!fs::exists(output, ec)) return {};
-      if (fs::path(output).extension() != ".lamella") continue;
+      if (!is_project(output)) continue;
       const Result<Project> project = open_project(output);
       if (!project || project->mesh.empty()) return {};
       if (mesh_key(*project->mesh_study) != mesh_key(job.study)) return {};
@@ -281,6 +283,7 @@ class StudyRun {
   std::string table_;
   std::vector<Part> parts_;
   std::optional<LoadParams> loaded_;
+  std::vector<std::string> left_out_;  // of the parts
 };
 
 }  // namespace

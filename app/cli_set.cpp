@@ -17,28 +17,33 @@ Error misread(const std::string& path, const std::string& finding, const std::st
   return {Code::usage, "--set " + path + ": " + finding + ".", hint};
 }
 
+/// Of an entry of a list; empty where it has none.
+std::string name_of(const Json& item) {
+  const auto name = item.is_object() ? item.find("name") : item.end();
+  return name != item.end() && name->is_string() ? name->get<std::string>() : "";
+}
+
 std::string names_in(const Json& list) {
   std::string names;
   for (const Json& item : list)
-    if (item.is_object() && item.contains("name"))
-      names += (names.empty() ? "\"" : ", \"") + item["name"].get<std::string>() + "\"";
+    if (const std::string name = name_of(item); !name.empty())
+      names += (names.empty() ? "\"" : ", \"") + name + "\"";
   return names.empty() ? "It is empty." : "It has " + names + ".";
 }
 
 /// The entry of the list that the rest of a path begins with; the rest then begins behind it. Names
-/// may have points: the longest that fits is meant.
+/// may have points: the longest that fits is meant; where none fits, the number of the entry.
 Json* entry_of(Json& list, std::string& rest) {
   Json* found = nullptr;
   std::size_t length = 0;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    for (const std::string& name :
-         {list[k].is_object() ? list[k].value("name", "") : std::string(), std::to_string(k)}) {
-      if (name.empty() || name.size() < length || rest.compare(0, name.size(), name) != 0) continue;
-      if (rest.size() != name.size() && rest[name.size()] != '.') continue;
-      found = &list[k];
-      length = name.size();
-    }
-  }
+  const auto look = [&](Json& entry, const std::string& name) {
+    if (name.empty() || name.size() < length || rest.compare(0, name.size(), name) != 0) return;
+    if (rest.size() != name.size() && rest[name.size()] != '.') return;
+    found = &entry;
+    length = name.size();
+  };
+  for (Json& entry : list) look(entry, name_of(entry));
+  for (std::size_t k = 0; !found && k < list.size(); ++k) look(list[k], std::to_string(k));
   if (found) rest.erase(0, std::min(rest.size(), length + 1));
   return found;
 }
@@ -125,11 +130,11 @@ Result<Study> with_settings(const Study& study, const std::vector<Setting>& sett
       continue;
     }
     const std::string member = path == "body.n" ? "layers" : path.substr(5);
-    for (std::size_t b = 0; b < json["bodies"].size(); ++b) {
+    if (!json["bodies"].is_array()) continue;  // which the study's reader refuses
+    for (Json& body : json["bodies"]) {
       // What is around the bodies is none of them.
-      if (study.domain && study.bodies[b].name == kBackground) continue;
-      Result<void> done = put(json, "bodies." + std::to_string(b) + "." + member, values[s]);
-      if (!done) return done.error();
+      if (study.domain && name_of(body) == kBackground) continue;
+      if (Result<void> done = put(body, member, values[s]); !done) return done.error();
     }
   }
   Result<Study> made = study_from_json(json.dump(), "--set");

@@ -218,6 +218,7 @@ Result<ExportCertificate> convert_mesh(const fs::path& from, const fs::path& to,
   if (!content->thickness.empty()) fields.thickness = &content->thickness;
   if (!content->layers.empty()) fields.layers = &content->layers;
   if (!content->quality.empty()) fields.quality = &content->quality;
+  fields.of_nodes = std::move(content->of_nodes);
   fields.of_elements = std::move(content->of_elements);
   fields.provenance = std::move(content->provenance);
   if (fields.provenance.empty()) {

@@ -15,11 +15,7 @@ ui::Services window_services(const std::filesystem::path& sample_folder) {
   services.formats = mesh_formats();
   services.export_mesh = [](const std::filesystem::path& file, const MeshState& state,
                             const Study& study) {
-    std::vector<InputFile> inputs;
-    for (const StudyInput& input : study.inputs)
-      if (Result<InputFile> described = describe_input(input.file); described)
-        inputs.push_back(*described);
-    return export_mesh(file, state, study, inputs);
+    return export_mesh(file, state, study, inputs_of(study));
   };
   services.sample_part =
       [folder = sample_folder](const std::string& name) -> Result<std::filesystem::path> {

@@ -283,7 +283,9 @@ void MainWindow::connect_session() {
   });
   connect(session_, &Session::unit_assumed, this, [this](const QString& file, const QString& size) {
     const auto again = [this, file](double unit) {
-      return [this, file, unit] { session_->open({file.toStdString()}, false, unit); };
+      return [this, file, unit] {
+        if (may_drop()) session_->open({file.toStdString()}, false, unit);
+      };
     };
     banner_->show_message(
         Banner::Kind::info, tr("An STL has no unit: read as millimeters, %1.").arg(size),

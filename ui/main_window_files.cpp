@@ -44,9 +44,11 @@ QStringList local_files(const QMimeData* data) {
 }  // namespace
 
 void MainWindow::open_files(const QStringList& files, bool add) {
-  if (files.isEmpty()) return;
+  if (files.isEmpty() || session_->activity() != Activity::idle) return;
   banner_->hide();
-  if (!add && !may_drop()) return;
+  const bool part =
+      !is_study(files.front()) && !is_mesh(files.front(), session_->services().formats);
+  if (!(add && part) && !may_drop()) return;
   folder_ = QFileInfo(files.front()).absolutePath();
   for (const QString& file : files) remember_file(file);
   if (is_study(files.front())) {
@@ -94,10 +96,17 @@ bool MainWindow::save(bool ask_name) {
                      std::move(study));
     }
   }
+  if (session_->activity() != Activity::idle) {
+    banner_->show_message(Banner::Kind::info, tr("Nothing is saved while something is under way."),
+                          tr("Cancel it, or save when it is done."));
+    return false;
+  }
   session_->save(file.toStdString());
   // Whoever closes the window waits for its file.
   QEventLoop loop;
-  connect(session_, &Session::activity_changed, &loop, &QEventLoop::quit);
+  connect(session_, &Session::activity_changed, &loop, [this, &loop] {
+    if (session_->activity() == Activity::idle) loop.quit();
+  });
   if (session_->activity() == Activity::saving) loop.exec();
   return !session_->modified();
 }
@@ -177,6 +186,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+  if (session_->activity() == Activity::saving) return event->ignore();
   if (!may_drop()) return event->ignore();
   session_->cancel();
   event->accept();

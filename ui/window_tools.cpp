@@ -110,7 +110,8 @@ void WindowTools::offer_recovery() {
             if (opened != QString::fromStdString(last.file.string())) return;
             recovery_->keep();
             Recovery::discard(last);
-            journal_->discard_left();
+            // The journals tell of all that was left.
+            if (recovery_->left_behind().empty()) journal_->discard_left();
           });
         }},
        {tr("What was done"), [this] { show_journal(); }},

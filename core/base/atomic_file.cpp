@@ -35,8 +35,10 @@ Result<void> back_up(const fs::path& file, const fs::path& between) {
   if (!fs::is_regular_file(file, ec)) return {};
   fs::create_hard_link(file, between, ec);
   // Not every file system has links.
-  if (ec && (!fs::copy_file(file, between, fs::copy_options::overwrite_existing, ec) ||
-             !flush_to_disk(between, O_RDONLY)))
+  if (ec && fs::copy_file(file, between, fs::copy_options::overwrite_existing, ec) &&
+      !flush_to_disk(between, O_RDONLY))
+    ec.assign(errno, std::generic_category());
+  if (ec)
     return io_error(file, "no backup could be made of it (" + ec.message() + ")",
                     "Check the space on the disk.");
   fs::rename(between, file.string() + ".bak", ec);
@@ -124,7 +126,8 @@ void remove_leftovers(const fs::path& target) {
   const std::string name = target.filename().string() + ".";
   std::error_code ec;
   std::vector<fs::path> gone;
-  for (const auto& entry : fs::directory_iterator(folder, ec)) {
+  for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec)) {
+    const fs::directory_entry& entry = *at;
     const std::string file = entry.path().filename().string();
     const std::size_t dots = file.find_first_not_of('.');
     if (dots == 0 || dots == file.npos || file.compare(dots, name.size(), name) != 0) continue;
@@ -133,8 +136,9 @@ void remove_leftovers(const fs::path& target) {
     if (process <= 0 || rest.find(".part") == rest.npos) continue;
     if (::kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH) continue;
     // On a shared disk the process may be one of another machine.
-    const auto written = fs::last_write_time(entry.path(), ec);
-    if (ec || fs::file_time_type::clock::now() - written < std::chrono::minutes(10)) continue;
+    std::error_code unknown;
+    const auto written = fs::last_write_time(entry.path(), unknown);
+    if (unknown || fs::file_time_type::clock::now() - written < std::chrono::minutes(10)) continue;
     gone.push_back(entry.path());
   }
   for (const fs::path& file : gone) fs::remove(file, ec);

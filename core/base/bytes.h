@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -28,6 +29,17 @@ class ByteWriter {
   void text(const std::string& s) {
     value(static_cast<std::uint64_t>(s.size()));
     bytes_ += s;
+  }
+  /// Calls each(element) to write every one.
+  template <class List, class Each>
+  void list(const List& elements, Each each) {
+    value(static_cast<std::uint64_t>(elements.size()));
+    for (const auto& element : elements) each(element);
+  }
+  template <class T, class Write>
+  void maybe(const std::optional<T>& thing, Write write) {
+    value(thing.has_value());
+    if (thing) write(*thing);
   }
   std::string take() { return std::move(bytes_); }
 
@@ -56,6 +68,18 @@ class ByteReader {
   void text(std::string& s) {
     const std::uint64_t n = count(1);
     s.assign(next(n), n);
+  }
+  /// Elements that take at least eight bytes each.
+  template <class List, class Each>
+  void list(List& elements, Each each) {
+    elements.resize(count(sizeof(std::uint64_t)));
+    for (auto& element : elements) each(element);
+  }
+  template <class T, class Read>
+  void maybe(std::optional<T>& thing, Read read) {
+    bool there = false;
+    value(there);
+    if (there) read(thing.emplace());
   }
   /// A number of things to come that take at least `bytes` each; 0 when so many cannot come.
   std::uint64_t count(std::size_t bytes) {

@@ -192,7 +192,7 @@ Result<std::string> judge(int status, std::string bytes, std::size_t at) {
 }  // namespace
 
 Result<std::string> run_in_child(const ChildWork& work, const ChildLimits& limits,
-                                 const Progress& progress) {
+                                 const Progress& progress, const std::function<void()>& copied) {
   using Clock = std::chrono::steady_clock;
   if (progress.cancelled()) return cancelled_error();
   int ends[2];
@@ -207,6 +207,7 @@ Result<std::string> run_in_child(const ChildWork& work, const ChildLimits& limit
   }
   const int why = errno;
   ::close(ends[1]);
+  if (copied) copied();
   if (pid < 0) {
     ::close(ends[0]);
     return Error{Code::failed, std::string("no process could be started: ") + std::strerror(why),

@@ -25,7 +25,9 @@ using ChildWork = std::function<std::string(const Progress&)>;
 /// Errors: failed (it crashed, threw, left early, or took too long; the message is a clause
 /// beginning with "it", or what the exception says), memory (the system killed it, or it found
 /// none), cancelled. The child is gone when this returns.
+/// `copied` is called as soon as the child exists, or cannot.
 Result<std::string> run_in_child(const ChildWork& work, const ChildLimits& limits,
-                                 const Progress& progress);
+                                 const Progress& progress,
+                                 const std::function<void()>& copied = {});
 
 }  // namespace lamella

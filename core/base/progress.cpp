@@ -36,6 +36,8 @@ void Progress::report(double fraction) const {
   root_->sink(value, phase_);
 }
 
-Error cancelled_error() { return {Code::cancelled, "Cancelled.", "The last complete state was kept."}; }
+Error cancelled_error() {
+  return {Code::cancelled, "Cancelled.", "The last complete state was kept."};
+}
 
 }  // namespace lamella

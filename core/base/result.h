@@ -9,14 +9,14 @@ namespace lamella {
 
 /// What kind of failure an Error is; `exit_code` maps it to the exit status of the batch program.
 enum class Code {
-  usage,           ///< the request itself makes no sense (unknown option, n < 1)
-  bad_input,       ///< a file or a geometry cannot be used
-  io,              ///< reading or writing failed for a reason outside the data
-  not_converged,   ///< a valid result exists but the goal was not reached
-  poor_quality,    ///< a valid result exists below the quality asked
-  memory,          ///< the memory limit asked would be exceeded
-  cancelled,       ///< the user asked to stop
-  failed           ///< an algorithm could not do its work
+  usage,          ///< the request itself makes no sense (unknown option, n < 1)
+  bad_input,      ///< a file or a geometry cannot be used
+  io,             ///< reading or writing failed for a reason outside the data
+  not_converged,  ///< a valid result exists but the goal was not reached
+  poor_quality,   ///< a valid result exists below the quality asked
+  memory,         ///< the memory limit asked would be exceeded
+  cancelled,      ///< the user asked to stop
+  failed          ///< an algorithm could not do its work
 };
 
 /// A failure as a value: one sentence for the user and a hint what to try.
@@ -30,14 +30,21 @@ struct Error {
 /// 6 memory, 130 cancelled.
 constexpr int exit_code(Code code) {
   switch (code) {
-    case Code::usage: return 2;
-    case Code::bad_input: return 3;
-    case Code::not_converged: return 4;
-    case Code::poor_quality: return 5;
-    case Code::memory: return 6;
-    case Code::cancelled: return 130;
+    case Code::usage:
+      return 2;
+    case Code::bad_input:
+      return 3;
+    case Code::not_converged:
+      return 4;
+    case Code::poor_quality:
+      return 5;
+    case Code::memory:
+      return 6;
+    case Code::cancelled:
+      return 130;
     case Code::io:
-    case Code::failed: break;
+    case Code::failed:
+      break;
   }
   return 1;
 }

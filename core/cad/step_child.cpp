@@ -3,6 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "core/base/bytes.h"
 #include "core/base/child_process.h"
@@ -11,64 +14,45 @@
 namespace lamella {
 namespace {
 
-void put(ByteWriter& out, const std::vector<std::string>& texts) {
-  out.value(static_cast<std::uint64_t>(texts.size()));
-  for (const std::string& text : texts) out.text(text);
+// What goes through the pipe, in one order for both ends: `io` writes or reads.
+
+template <class Io, class E>
+void members(Io& io, E& error) requires std::is_same_v<std::remove_const_t<E>, Error> {
+  io.value(error.code);
+  io.text(error.message);
+  io.text(error.hint);
 }
 
-void take(ByteReader& in, std::vector<std::string>& texts) {
-  texts.resize(in.count(sizeof(std::uint64_t)));
-  for (std::string& text : texts) in.text(text);
+template <class Io, class P>
+void members(Io& io, P& part) requires std::is_same_v<std::remove_const_t<P>, Part> {
+  io.text(part.name);
+  io.value(part.color);
+  auto& s = part.surface;
+  io.array(s.points);
+  io.array(s.facets);
+  io.array(s.facet_face);
+  io.list(s.faces, [&](auto& face) {
+    io.text(face.name);
+    io.value(face.color);
+  });
+  io.array(s.feature_edges);
+  io.array(s.corners);
+  io.value(part.cad_volume);
+  io.value(part.chord_error);
+  io.list(part.notes, [&](auto& note) { io.text(note); });
 }
 
-void put(ByteWriter& out, const Error& error) {
-  out.value(error.code);
-  out.text(error.message);
-  out.text(error.hint);
-}
-
-void take(ByteReader& in, Error& error) {
-  in.value(error.code);
-  in.text(error.message);
-  in.text(error.hint);
-}
-
-void put(ByteWriter& out, const Part& part) {
-  out.text(part.name);
-  out.value(part.color);
-  const ReferenceSurface<3>& s = part.surface;
-  out.array(s.points);
-  out.array(s.facets);
-  out.array(s.facet_face);
-  out.value(static_cast<std::uint64_t>(s.faces.size()));
-  for (const SurfaceFace& face : s.faces) {
-    out.text(face.name);
-    out.value(face.color);
-  }
-  out.array(s.feature_edges);
-  out.array(s.corners);
-  out.value(part.cad_volume);
-  out.value(part.chord_error);
-  put(out, part.notes);
-}
-
-void take(ByteReader& in, Part& part) {
-  in.text(part.name);
-  in.value(part.color);
-  ReferenceSurface<3>& s = part.surface;
-  in.array(s.points);
-  in.array(s.facets);
-  in.array(s.facet_face);
-  s.faces.resize(in.count(sizeof(std::uint64_t)));
-  for (SurfaceFace& face : s.faces) {
-    in.text(face.name);
-    in.value(face.color);
-  }
-  in.array(s.feature_edges);
-  in.array(s.corners);
-  in.value(part.cad_volume);
-  in.value(part.chord_error);
-  take(in, part.notes);
+template <class Io, class C>
+void members(Io& io, C& content) requires std::is_same_v<std::remove_const_t<C>, StepContent> {
+  io.value(content.free_shells);
+  io.value(content.free_faces);
+  io.list(content.bodies, [&](auto& body) {
+    members(io, body.part);
+    io.maybe(body.refusal, [&](auto& refusal) { members(io, refusal); });
+    io.array(body.rough.points);
+    io.array(body.rough.facets);
+    io.value(body.exact_shape_valid);
+  });
 }
 
 bool within(std::int32_t index, std::size_t count) {
@@ -107,43 +91,18 @@ std::uint64_t default_memory() {
 
 std::string to_bytes(const StepContent& content, const Result<void>& outcome) {
   ByteWriter out;
-  out.value(outcome.ok());
-  if (!outcome) put(out, outcome.error());
-  out.value(content.free_shells);
-  out.value(content.free_faces);
-  out.value(static_cast<std::uint64_t>(content.bodies.size()));
-  for (const StepBody& body : content.bodies) {
-    put(out, body.part);
-    out.value(body.refusal.has_value());
-    if (body.refusal) put(out, *body.refusal);
-    out.array(body.rough.points);
-    out.array(body.rough.facets);
-    out.value(body.exact_shape_valid);
-  }
+  const std::optional<Error> error = outcome ? std::nullopt : std::optional(outcome.error());
+  out.maybe(error, [&](const Error& e) { members(out, e); });
+  members(out, content);
   return out.take();
 }
 
 bool from_bytes(const std::string& bytes, StepContent& content, Result<void>& outcome) {
   ByteReader in(bytes);
-  bool flag = false;
-  in.value(flag);
-  outcome = {};
-  if (!flag) {
-    Error error;
-    take(in, error);
-    outcome = error;
-  }
-  in.value(content.free_shells);
-  in.value(content.free_faces);
-  content.bodies.resize(in.count(sizeof(std::uint64_t)));
-  for (StepBody& body : content.bodies) {
-    take(in, body.part);
-    in.value(flag);
-    if (flag) take(in, body.refusal.emplace());
-    in.array(body.rough.points);
-    in.array(body.rough.facets);
-    in.value(body.exact_shape_valid);
-  }
+  std::optional<Error> error;
+  in.maybe(error, [&](Error& e) { members(in, e); });
+  outcome = error ? Result<void>(*error) : Result<void>();
+  members(in, content);
   return in.done() && std::all_of(content.bodies.begin(), content.bodies.end(), sound);
 }
 
@@ -161,11 +120,8 @@ Result<void> read_step_in_child(const std::filesystem::path& file, const LoadPar
       params.cad_seconds,
       params.cad_memory ? static_cast<std::uint64_t>(*params.cad_memory * 1e6) : default_memory()};
   // Nobody else may be inside OCCT, its locks held, when the process is copied.
-  Result<std::string> bytes = Error{};
-  {
-    const OcctLock alone;
-    bytes = run_in_child(in_child, limits, progress);
-  }
+  std::optional<OcctLock> alone(std::in_place);
+  Result<std::string> bytes = run_in_child(in_child, limits, progress, [&] { alone.reset(); });
   if (!bytes) {
     Error error = bytes.error();
     if (error.code == Code::cancelled) return error;

@@ -51,10 +51,12 @@ class Arguments {
     }
     const std::size_t begin = at_;
     if (text_[at_] == '\'') {
-      at_ = text_.find('\'', at_ + 1);
-      if (at_ == std::string_view::npos) return false;
-      value.text = text_.substr(begin + 1, at_ - begin - 1);
-      ++at_;
+      do {  // two quotes within a text stand for one
+        at_ = text_.find('\'', at_ + 1);
+        if (at_ == std::string_view::npos) return false;
+        value.text = text_.substr(begin + 1, at_ - begin - 1);
+        ++at_;
+      } while (at_ < text_.size() && text_[at_] == '\'');
       return true;
     }
     at_ = std::min(text_.find_first_of(",()';", at_), text_.size());
@@ -62,8 +64,8 @@ class Arguments {
     const char* end = text_.data() + at_;
     if (text_[begin] == '#')
       std::from_chars(text_.data() + begin + 1, end, value.reference);
-    else
-      std::from_chars(text_.data() + begin, end, value.number);
+    else  // from_chars knows no plus
+      std::from_chars(text_.data() + begin + (text_[begin] == '+' ? 1 : 0), end, value.number);
     return true;
   }
 
@@ -108,7 +110,8 @@ class Reader {
     Entities found;
     for (std::size_t at = text.find(type); at != std::string_view::npos;
          at = text.find(type, at + type.size())) {
-      if (at == 0 || text.substr(at + type.size(), 1) != "(") continue;
+      const std::size_t open = text.find_first_not_of(" \t\r\n", at + type.size());
+      if (at == 0 || open == std::string_view::npos || text[open] != '(') continue;
       const std::size_t before = text.find_last_not_of(" \t\r\n", at - 1);
       if (before == std::string_view::npos || text[before] != '=') continue;
       const std::size_t number = text.rfind('#', before);
@@ -116,7 +119,7 @@ class Reader {
       Value value;
       std::int64_t id = 0;
       std::from_chars(text.data() + number + 1, text.data() + before, id);
-      if (Arguments(text, at + type.size()).read(value)) found.emplace_back(id, std::move(value));
+      if (Arguments(text, open).read(value)) found.emplace_back(id, std::move(value));
     }
     return found;
   }
@@ -126,8 +129,11 @@ class Reader {
       return text.find(words) != std::string_view::npos;
     };
     if (holds("CONVERSION_BASED_UNIT('INCH'") || holds("CONVERSION_BASED_UNIT('inch'")) return 25.4;
+    if (holds("CONVERSION_BASED_UNIT('FOOT'") || holds("CONVERSION_BASED_UNIT('foot'"))
+      return 304.8;
     if (holds("SI_UNIT(.MILLI.,.METRE.)")) return 1;
     if (holds("SI_UNIT(.CENTI.,.METRE.)")) return 10;
+    if (holds("SI_UNIT(.MICRO.,.METRE.)")) return 1e-3;
     return holds("SI_UNIT($,.METRE.)") ? 1000 : 1;
   }
 

@@ -147,7 +147,10 @@ Result<Fitness> fitness(const SimplexMesh<3>& mesh, const Progress& progress) {
   inner.reserve(2 * n);
   std::vector<std::array<NodeId, 3>> boundary;
   DisjointSets together(n);
+  bool stopped = false;
   for_each_face<3>(uses, [&](std::size_t first, std::size_t last) {
+    if (first % 65536 == 0) stopped = stopped || progress.cancelled();
+    if (stopped) return;
     if (last - first == 1) {
       boundary.push_back(uses[first].nodes);
       found.boundary_skewness =
@@ -160,6 +163,7 @@ Result<Fitness> fitness(const SimplexMesh<3>& mesh, const Progress& progress) {
       together.join(uses[first].element, uses[k].element);
     inner.push_back({uses[first].nodes, uses[first].element, uses[first + 1].element});
   });
+  if (stopped) return cancelled_error();
   std::vector<FaceShape> shapes(inner.size());
   if (!parallel_each(
           inner.size(), 0, progress.portion(0.5, 0.9),
@@ -206,7 +210,8 @@ std::vector<FitnessLine> fitness_lines(const Fitness& f, std::size_t bodies,
                    f.free_edges == 0, "The boundary is not closed: check the mesh."});
 
   const char* const kCorrect =
-      "The solver needs non-orthogonal correctors and limited schemes; or cap the anisotropy.";
+      "The solver needs non-orthogonal correctors and limited schemes; or cap the anisotropy "
+      "(--max-anisotropy).";
   lines.push_back({"OpenFOAM", "non-orthogonality, largest",
                    text("%.1f degrees", f.non_orthogonality), "at most 70", f.beyond_70 == 0,
                    kCorrect});
@@ -217,12 +222,13 @@ std::vector<FitnessLine> fitness_lines(const Fitness& f, std::size_t bodies,
   lines.push_back({"OpenFOAM", "skewness, largest",
                    text("%.2f", std::max(f.skewness.max, f.boundary_skewness)), "at most 4",
                    std::max(f.skewness.max, f.boundary_skewness) <= 4,
-                   "Cap the anisotropy, or let the mesh iterate further."});
+                   "Cap the anisotropy (--max-anisotropy), or let the mesh iterate further."});
 
-  lines.push_back({"Moldflow", "aspect ratio, largest", text("%.1f", f.aspect.max), "at most 50",
-                   f.aspect_over_50 == 0,
-                   count(f.aspect_over_50) + " of " + count(f.elements) +
-                       " elements are beyond: ask fewer layers, or cap the anisotropy."});
+  lines.push_back(
+      {"Moldflow", "aspect ratio, largest", text("%.1f", f.aspect.max), "at most 50",
+       f.aspect_over_50 == 0,
+       count(f.aspect_over_50) + " of " + count(f.elements) +
+           " elements are beyond: ask fewer layers, or cap the anisotropy (--max-anisotropy)."});
   if (layers)
     lines.push_back({"Moldflow", "rows of elements across walls, 5 % quantile",
                      text("%.1f", *layers), "at least 3", *layers >= 3, "Ask n = 4 or more."});

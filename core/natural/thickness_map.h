@@ -11,7 +11,8 @@ namespace lamella {
 
 /// Wall thickness on the surface of a body, known before it is meshed.
 ///
-/// The triangles of the surface, divided until none of their sides is long. Every face has points
+/// The triangles of the surface, divided until none of their sides is long or there are 200,000 of
+/// them. Every face has points
 /// of its own: the thickness may jump where two of them meet.
 struct ThicknessMap {
   std::vector<Vec<3>> points;                       ///< mm
@@ -21,9 +22,8 @@ struct ThicknessMap {
 };
 
 /// The thickness that the natural metric divides (geometric detector), at points at most `spacing`
-/// mm apart; 0: a hundredth of the box diagonal. A point on the border of a face is judged from
-/// just within the face.
-/// Errors: bad_input (no surface), cancelled.
+/// mm apart as far as that many triangles do; 0: a hundredth of the box diagonal. A point on the
+/// border of a face is judged from just within the face. Errors: bad_input (no surface), cancelled.
 Result<ThicknessMap> thickness_map(const ReferenceSurface<3>& surface, double spacing = 0,
                                    const Progress& progress = {});
 

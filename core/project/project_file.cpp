@@ -311,10 +311,9 @@ Result<void> prove(const fs::path& written, const std::vector<NewEntry>& entries
 
 }  // namespace
 
-bool names_study(const fs::path& file) {
-  const std::string ending = ending_of(file);
-  return ending == ".lamella" || ending == ".json";
-}
+bool is_project(const fs::path& file) { return ending_of(file) == ".lamella"; }
+
+bool names_study(const fs::path& file) { return is_project(file) || ending_of(file) == ".json"; }
 
 Result<Project> open_project(const fs::path& file, const Progress& progress, const fs::path& also) {
   return Opening(file, also).open(progress);
@@ -351,8 +350,13 @@ Result<std::vector<std::string>> save_project(const ProjectContent& content, con
     Study made_of = seen_from(content.mesh_study.value_or(content.study), folder);
     for (StudyInput& input : made_of.inputs) input.entry.clear();
     entries.push_back({kMeshStudy, study_to_json(made_of)});
-    if (!content.report_json.empty()) entries.push_back({kReportJson, content.report_json});
-    if (!content.report_html.empty()) entries.push_back({kReportHtml, content.report_html});
+    for (const auto& [name, report] : {std::pair{kReportJson, &content.report_json},
+                                       std::pair{kReportHtml, &content.report_html}}) {
+      if (report->size() > kLongestText)
+        notes.push_back(std::string(name) + " is too long for a project: it was left out.");
+      else if (!report->empty())
+        entries.push_back({name, *report});
+    }
   }
   if (study.embed_inputs) embed(content, study, entries, notes);
   const std::string text = study_to_json(study);

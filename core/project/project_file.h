@@ -14,7 +14,7 @@
 
 namespace lamella {
 
-/// Writes the mesh of a project, or reads it, as VTU: the room knows no mesh format.
+/// Writes the mesh of a project as VTU: the room knows no mesh format.
 using MeshWriter = std::function<Result<void>(const std::filesystem::path& vtu)>;
 
 /// What is to be saved. The inputs are named from anywhere but relative to the working folder.
@@ -41,7 +41,9 @@ struct Project {
   std::shared_ptr<const void> folder;
 };
 
-/// Whether the file is a project by its ending (.lamella) or a study as text (.json).
+/// Whether the file is a project by its ending, .lamella.
+bool is_project(const std::filesystem::path& file);
+/// Whether the file is a project or a study as text (.json).
 bool names_study(const std::filesystem::path& file);
 
 /// Reads a project, or a bare study as text (with its mesh beside it, FILE.vtu, as schema 1 had

@@ -430,9 +430,12 @@ class AssemblyLoop {
     record.layers = join(layers);
     record.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const auto change = [](double a, double b) { return std::abs(a - b) / std::max(b, 1e-300); };
-    settled_ = false;
+    // What the flow asks for is more than what has settled.
+    const bool corrected = std::any_of(of_.members.begin(), of_.members.end(),
+                                       [](const Member& m) { return !m.of_flow.empty(); });
+    if (!corrected) settled_ = false;
     // Fuzzy and exact interfaces cannot be compared.
-    if (record.iteration > 1 && (record.mixed > 0) == (records_.back().mixed > 0)) {
+    if (!corrected && record.iteration > 1 && (record.mixed > 0) == (records_.back().mixed > 0)) {
       const IterationRecord& before = records_.back();
       const double nodes =
           change(static_cast<double>(record.nodes), static_cast<double>(before.nodes));
@@ -546,6 +549,7 @@ Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
     if (loop.failed() || (study.options.until_settled && loop.settled())) break;
   }
   for (int i = 0; flows && i <= rounds && !outcome.cancelled && !loop.failed(); ++i) {
+    if (i > 0 && !loop.current().flow) break;  // there is nothing to correct by
     const double from = kFirstMeshShare + width * (iterations + (i == 0 ? 0 : i - 0.5));
     const Progress round = progress.portion(from, from + (i == 0 ? 0.5 : 1) * width, "flow");
     const Result<void> done = i == 0 ? loop.solve_flow(round) : loop.flow_step(round);

@@ -31,8 +31,8 @@ struct RankedBody {
   const Part* part = nullptr;
   const StudyZone* zone = nullptr;
 };
-/// All bodies but the background, those first that keep what they share with others: by the rank of
-/// their roles, among equals parts before zones, each in the order given.
+/// All bodies but what is around them, those first that keep what they share with others: by the
+/// rank of their roles, among equals parts before zones, each in the order given.
 std::vector<RankedBody> by_rank(const Study& study, const std::vector<Part>& parts);
 
 struct StudyOverlaps {

@@ -76,7 +76,11 @@ Result<FlowFields> flow_of_mesh(const MeshState& state, const Study& study,
     FlowCase<3> flow = flow_case_of(study, name);
     for (const Part& part : parts)
       if (part.name == name) name_groups(study, part, body);
-    if (study.groups.empty()) flow = case_by_names(body);
+    if (study.groups.empty()) {
+      const double viscosity = flow.viscosity;
+      flow = case_by_names(body);
+      flow.viscosity = viscosity;
+    }
     if (flow.gates.empty() || body.elements.empty()) continue;
     const Result<FlowFields> found =
         flow_through(body, flow, method, study.options.threads,
@@ -103,7 +107,8 @@ Result<FlowPreview> preview_flow(const MeshState& state, const Study& study,
   for (std::size_t b = 0; b < mesh.bodies.size(); ++b) {
     std::vector<NodeId> node;
     const SimplexMesh<3> body = extract_body(mesh, static_cast<std::int32_t>(b), &node);
-    if (body.elements.empty()) continue;
+    const BodySettings settings = settings_of(study, mesh.bodies[b]);
+    if (body.elements.empty() || !settings.flow) continue;
     FlowFields flow;
     MetricField<3> metric;
     double fastest = 0;
@@ -115,8 +120,7 @@ Result<FlowPreview> preview_flow(const MeshState& state, const Study& study,
     if (!(fastest > 0)) continue;
     for (const std::size_t e : elements_of(mesh, b))
       flow.indicator.push_back(state.flow->indicator[e]);
-    const double h_min =
-        settings_of(study, mesh.bodies[b]).h_min.value_or(1e-3 * diagonal_of(body.points));
+    const double h_min = settings.h_min.value_or(1e-3 * diagonal_of(body.points));
     const auto at = static_cast<double>(b);
     const Result<FlowCorrection> made =
         flow_correction(body, metric, flow, asked, {}, h_min, study.options.threads,

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/atomic_file.h"
-#include "core/base/sha256.h"
 #include "core/base/version.h"
 #include "core/mesh/quality.h"
 #include "core/study/join.h"
@@ -98,9 +97,17 @@ std::string dump(const Json& json, int indent) {
 }  // namespace
 
 Result<InputFile> describe_input(const std::filesystem::path& file) {
-  Result<std::string> bytes = read_file(file);
-  if (!bytes) return bytes.error();
-  return InputFile{file.filename().string(), bytes->size(), sha256(*bytes)};
+  StudyInput input{file.string()};
+  if (Result<void> known = identify(input, file); !known) return known.error();
+  return InputFile{file.filename().string(), input.bytes, input.sha256};
+}
+
+std::vector<InputFile> inputs_of(const Study& study) {
+  std::vector<InputFile> inputs;
+  for (const StudyInput& input : study.inputs)
+    inputs.push_back(
+        {std::filesystem::path(input.file).filename().string(), input.bytes, input.sha256});
+  return inputs;
 }
 
 Result<Report> build_report(const Study& study, const Outcome& outcome,
@@ -142,7 +149,7 @@ Result<Report> build_report(const Study& study, const Outcome& outcome,
 std::vector<FitnessLine> fitness_lines(const Report& report) {
   const MeshState& state = *report.outcome.state;
   const LayerStats& layers = report.final_record.layers;
-  return fitness_lines(report.fitness, report.study.domain ? 1 : state.mesh.bodies.size(),
+  return fitness_lines(report.fitness, state.mesh.bodies.size(),
                        layers.places > 0 ? std::optional(layers.p5) : std::nullopt);
 }
 
@@ -173,7 +180,9 @@ std::string report_json(const Report& report) {
                      {"conformity", report.final_record.conformity},
                      {"unit_edges", report.final_record.unit_edges},
                      {"aspect_ratio_max", report.fitness.aspect.max},
-                     {"aspect_ratio_over_50", report.fitness.aspect_over_50},
+                     {"aspect_ratio_over_50",
+                      static_cast<double>(report.fitness.aspect_over_50) /
+                          static_cast<double>(std::max<std::size_t>(1, report.fitness.elements))},
                      {"histogram", histogram_json(report.quality)}};
   json["solvers"] = Json::array();
   for (const FitnessLine& line : fitness_lines(report))

@@ -21,6 +21,9 @@ struct InputFile {
 /// Errors: io.
 Result<InputFile> describe_input(const std::filesystem::path& file);
 
+/// The inputs of a study whose hashes are known, as reports and meshes name them.
+std::vector<InputFile> inputs_of(const Study& study);
+
 /// What a report tells besides the outcome itself.
 struct ReportContext {
   std::vector<InputFile> inputs;

@@ -29,19 +29,12 @@ Result<void> check_flow(const Study& study, const std::vector<std::string>& name
     const FlowCase<3> flow = flow_case_of(study, name);
     for (const BoundaryGroup& group : study.groups)
       if (group.pressure && group.rate)
-        return usage(
-            "Gate "
-            " + group.name + "
-            " has a pressure and a rate.",
-            "Give one of them.");
+        return usage("Gate \"" + group.name + "\" has a pressure and a rate.", "Give one of them.");
     const auto held = std::count_if(flow.gates.begin(), flow.gates.end(),
                                     [](const FlowGate& gate) { return gate.pressure.has_value(); });
     if (flow.vents.empty() && (flow.gates.size() < 2 || held == 0))
-      return usage(
-          "Body "
-          " + name + "
-          ": the flow has a gate and no way out.",
-          "Make a group of its faces a vent.");
+      return usage("Body \"" + name + "\": the flow has a gate and no way out.",
+                   "Make a group of its faces a vent.");
   }
   if (!any)
     return usage("The flow needs a gate on a body that it may correct.",

@@ -122,10 +122,20 @@ class BodyLoop {
 
   bool wants_flow() const { return has_flow(study_, part_.name); }
 
-  /// The flow through the best mesh, from where rounds of correction start. A flow that cannot be
-  /// solved is a note. Errors: cancelled.
+  bool has_flow_fields() const { return current_.flow != nullptr; }
+
+  /// The flow through the best mesh, from where rounds of correction start: it becomes the last of
+  /// the records. A flow that cannot be solved is a note. Errors: those of the detector; cancelled.
   Result<void> begin_flow(const Progress& progress) {
     current_ = best_;
+    if (best_record_ + 1 != outcome_.records.size()) {
+      const IterationRecord best = outcome_.records[best_record_];
+      outcome_.notes.push_back("The flow starts from the mesh of iteration " +
+                               std::to_string(best.iteration) + ", which has the best layers.");
+      best_record_ = outcome_.records.size();
+      outcome_.records.push_back(best);
+      outcome_.records.back().iteration = static_cast<int>(best_record_);
+    }
     natural_.layers = settings_.layers;
     Result<NaturalField> field =
         detector_->field(current_.mesh, natural_, progress.portion(0, 0.3));
@@ -143,7 +153,7 @@ class BodyLoop {
   }
 
   /// One round: the metric corrected by the flow of the round before, the mesh adapted to it, and
-  /// the flow through that. Errors: cancelled.
+  /// the flow through that. Errors: as `step`.
   Result<void> flow_step(const Progress& progress) {
     if (!current_.flow) return {};
     const IterationRecord before = outcome_.records[best_record_];
@@ -180,6 +190,7 @@ class BodyLoop {
 
   const MeshState& best() const { return best_; }
   const IterationRecord& last_record() const { return outcome_.records.back(); }
+  std::size_t record_count() const { return outcome_.records.size(); }
   const MeshState& current() const { return current_; }
   bool converged() const { return converged_; }
 
@@ -486,7 +497,13 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
     }
     if (!outcome.cancelled) tell(i, since);
   }
+  const auto record_count = [&] {
+    std::size_t count_all = 0;
+    for (const BodyLoop& body : bodies) count_all += body.record_count();
+    return count_all;
+  };
   for (int i = 0; flows && i <= rounds && !outcome.cancelled; ++i) {
+    const std::size_t before = record_count();
     const auto since = Clock::now();
     const double from = kFirstMeshShare + width * (iterations + (i == 0 ? 0 : i - 0.5));
     const Progress round = progress.portion(from, from + (i == 0 ? 0.5 : 1) * width,
@@ -496,19 +513,26 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
       const auto at = static_cast<double>(b);
       const Progress part = round.portion(at / count, (at + 1) / count);
       const Result<void> done = i == 0 ? bodies[b].begin_flow(part) : bodies[b].flow_step(part);
+      if (!done && done.error().code != Code::cancelled) return done.error();
       outcome.cancelled = !done;
     }
-    if (i == 0) {  // of the mesh that was told already
+    if (outcome.cancelled) break;
+    const bool more = record_count() > before;
+    if (more) {
+      tell(outcome.records.back().iteration + 1, since);
+    } else if (i == 0) {  // of the mesh that was told already
       std::vector<const IterationRecord*> last;
       for (const BodyLoop& body : bodies) last.push_back(&body.last_record());
       const IterationRecord all = join(last);
       outcome.records.back().flow_rate = all.flow_rate;
       outcome.records.back().flow_pressure = all.flow_pressure;
-      if (on_iteration && all.flow_rate > 0 && !outcome.cancelled)
+      if (on_iteration && all.flow_rate > 0)
         on_iteration(outcome.records.back(),
                      joined([](const BodyLoop& b) -> const MeshState& { return b.current(); }));
     }
-    if (i > 0 && !outcome.cancelled) tell(outcome.records.back().iteration + 1, since);
+    const bool flowing = std::any_of(bodies.begin(), bodies.end(),
+                                     [](const BodyLoop& b) { return b.has_flow_fields(); });
+    if (!flowing || (i > 0 && !more)) break;  // there is nothing to correct by, or all gave up
   }
 
   outcome.state = joined([](const BodyLoop& b) -> const MeshState& { return b.best(); });

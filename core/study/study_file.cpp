@@ -557,14 +557,4 @@ Result<void> save_study(const Study& study, const std::filesystem::path& file) {
   return target->commit(before && *before != text);
 }
 
-std::vector<std::filesystem::path> input_files(const Study& study,
-                                               const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  for (const StudyInput& input : study.inputs) {
-    const std::filesystem::path path(input.file);
-    files.push_back(path.is_absolute() || folder.empty() ? path : folder / path);
-  }
-  return files;
-}
-
 }  // namespace lamella

@@ -11,13 +11,12 @@ namespace lamella {
 /// Of what is written. Schema 1, whose inputs had no hash, is read too.
 inline constexpr int kStudySchema = 2;
 
-/// A study as plain JSON (resources/docs/project.schema.json): name, unit ("mm"), inputs (relative
-/// to the study's folder), bodies, zones, domain, options, sizing, groups and cuts, named as the
-/// members of Study. What is unset is left out.
+/// A study as plain JSON (resources/docs/project.schema.json): its unit ("mm") and the members of
+/// Study by their names, inputs relative to the study's folder. What is unset is left out.
 std::string study_to_json(const Study& study);
 
-/// What the mesh depends on, as text: studies of one key give the same mesh. Where a file lies,
-/// what it is called, and what is for the eye does not count.
+/// What the mesh depends on, as text: studies of one key give the same mesh. Where a file lies and
+/// what is for the eye does not count; an STL names its body, which settings may name.
 std::string mesh_key(Study study);
 
 /// Reads what `study_to_json` writes; members left out keep their defaults. `where` names the
@@ -38,9 +37,5 @@ Result<void> save_study(const Study& study, const std::filesystem::path& file);
 
 /// Takes down what the input's file holds now: its size and hash. Errors: io.
 Result<void> identify(StudyInput& input, const std::filesystem::path& file);
-
-/// The inputs as paths, those that are relative seen from `folder`.
-std::vector<std::filesystem::path> input_files(const Study& study,
-                                               const std::filesystem::path& folder);
 
 }  // namespace lamella

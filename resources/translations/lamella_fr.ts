@@ -31,8 +31,8 @@
         <translation>&amp;Enregistrer l&apos;étude</translation>
     </message>
     <message>
-        <source>Save the study, with its mesh beside it</source>
-        <translation>Enregistrer l&apos;étude, et son maillage à côté</translation>
+        <source>Save the study, its mesh and its report in one file</source>
+        <translation>Enregistrer l&apos;étude, son maillage et son rapport en un fichier</translation>
     </message>
     <message>
         <source>Save study &amp;as…</source>
@@ -693,10 +693,6 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
     <message>
         <source>Save figures</source>
         <translation>Enregistrer les valeurs</translation>
-    </message>
-    <message>
-        <source>Wrote %1</source>
-        <translation>%1 écrit</translation>
     </message>
     <message>
         <source>nodes</source>
@@ -1914,6 +1910,14 @@ rendu uniforme sur les éléments</translation>
         <source>Keep copies of the parts</source>
         <translation>Garder des copies des pièces</translation>
     </message>
+    <message>
+        <source>Nothing is saved while something is under way.</source>
+        <translation>Rien n&apos;est enregistré pendant qu&apos;une opération est en cours.</translation>
+    </message>
+    <message>
+        <source>Cancel it, or save when it is done.</source>
+        <translation>Annulez-la, ou enregistrez quand elle est finie.</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::MeshPage</name>
@@ -2420,10 +2424,6 @@ Les barres croissent comme le logarithme du nombre</translation>
     <message>
         <source>Save figures</source>
         <translation>Enregistrer les valeurs</translation>
-    </message>
-    <message>
-        <source>Wrote %1</source>
-        <translation>%1 écrit</translation>
     </message>
     <message>
         <source>Quality of the elements, 1 is best</source>

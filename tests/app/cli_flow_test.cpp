@@ -27,6 +27,9 @@ TEST_F(CliFlow, TellsRatesThatBalanceAndWritesTheFields) {
   for (const std::string name : {"velocity", "pressure", "acceleration", "shear_rate",
                                  "direction_change", "residual", "residual_directional"})
     EXPECT_NE(bytes.find("Name=\"" + name + "\""), std::string::npos) << name;
+  // Another format keeps what is known at the nodes.
+  ASSERT_EQ(run("export f.vtu f.msh"), 0) << err;
+  EXPECT_NE(read_file(folder / "f.msh").value().find("\"velocity\""), std::string::npos);
 
   // The rate asked for needs the pressure that gave it.
   ASSERT_EQ(run("flow c.msh --gate-rate gate=" + std::to_string(through) +

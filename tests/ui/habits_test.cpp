@@ -90,13 +90,13 @@ TEST_F(HabitsTest, PlotsAreSavedAsTablesAndPictures) {
   EXPECT_EQ(all, session().shown_state()->mesh.element_count());
   quality->save(file("quality.png"));
   EXPECT_FALSE(QImage(file("quality.png")).isNull());
-  // What cannot be written is told in the log.
-  QSignalSpy logged(&session(), &Session::logged);
+  // What cannot be written is told like any failure.
+  QSignalSpy failed(&session(), &Session::failed);
   quality->save(file("nowhere/quality.png"));
   quality->save(file("quality.txt"));
-  ASSERT_EQ(logged.count(), 2);
-  EXPECT_TRUE(logged[0][0].toString().contains("nowhere"));
-  EXPECT_TRUE(logged[1][0].toString().contains("quality.txt"));
+  ASSERT_EQ(failed.count(), 2);
+  EXPECT_TRUE(failed[0][0].toString().contains("nowhere"));
+  EXPECT_TRUE(failed[1][0].toString().contains("quality.txt"));
 }
 
 TEST_F(HabitsTest, TheJournalTellsEditsActionsAndTheirUndoing) {

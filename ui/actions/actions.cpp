@@ -24,7 +24,7 @@ constexpr Row table[] = {
     {Act::add, QT_TRANSLATE_NOOP("lamella::ui::Actions", "&Add body…"), "add", "Ctrl+Shift+O",
      QT_TRANSLATE_NOOP("lamella::ui::Actions", "Add the bodies of another file")},
     {Act::save, QT_TRANSLATE_NOOP("lamella::ui::Actions", "&Save study"), "save", "Ctrl+S",
-     QT_TRANSLATE_NOOP("lamella::ui::Actions", "Save the study, with its mesh beside it")},
+     QT_TRANSLATE_NOOP("lamella::ui::Actions", "Save the study, its mesh and its report in one file")},
     {Act::save_as, QT_TRANSLATE_NOOP("lamella::ui::Actions", "Save study &as…"), "", "Ctrl+Shift+S",
      QT_TRANSLATE_NOOP("lamella::ui::Actions", "Save the study under another name")},
     {Act::remove, QT_TRANSLATE_NOOP("lamella::ui::Actions", "&Remove"), "remove", "Del",

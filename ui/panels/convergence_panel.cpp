@@ -123,9 +123,7 @@ QString ConvergencePanel::csv() const {
 
 void ConvergencePanel::save(const QString& file) {
   if (file.isEmpty()) return;
-  const Result<void> written = save_figures(file, csv(), *plots_);
-  Q_EMIT session_.logged(written ? tr("Wrote %1").arg(file)
-                                 : QString::fromStdString(written.error().message));
+  session_.wrote(file, save_figures(file, csv(), *plots_));
 }
 
 void ConvergencePanel::follow_iterations() {

@@ -127,7 +127,6 @@ QWidget* FlowPanel::make_settings() {
   weight_text_->setFixedWidth(40);
   weight_text_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   row->addWidget(weight_text_);
-  weight_title_ = new QLabel;
   form->add(tr("Strength"), weight);
   weight_title_ = qobject_cast<QLabel*>(form->labelForField(weight));
   growth_ = number_box(1.05, 20, 0.1, "flow_growth",
@@ -211,23 +210,29 @@ void FlowPanel::refresh() {
   weight_text_->setText(gradient ? QString::number(weight, 'g', 2)
                                  : QString("× %1").arg(flow.beta, 0, 'g', 2));
   const auto state = session_.shown_state();
-  if (asked && state && state->flow && !preview() && session_.activity() == Activity::idle)
+  // A run needs the processors.
+  if (session_.activity() == Activity::running) worker_.cancel();
+  if (asked && state && state->flow && !is_previewed() && session_.activity() == Activity::idle)
     wait_.start();
   expected_->setText(preview_text());
   show_flow();
 }
 
+bool FlowPanel::is_previewed() const {
+  return previewed_ && previewed_ == session_.shown_state() &&
+         previewed_with_ == session_.study().flow.value_or(StudyFlow{});
+}
+
 std::optional<FlowPreview> FlowPanel::preview() const {
-  const bool known = previewed_ && previewed_ == session_.shown_state() &&
-                     previewed_with_ == session_.study().flow.value_or(StudyFlow{});
-  return known ? preview_ : std::nullopt;
+  return is_previewed() ? preview_ : std::nullopt;
 }
 
 QString FlowPanel::preview_text() const {
   const auto state = session_.shown_state();
   if (!session_.study().flow) return {};
   if (!state || !state->flow) return tr("Solve the flow to see what the correction comes to.");
-  if (!preview()) return tr("Counting…");
+  if (!is_previewed()) return tr("Counting…");
+  if (!preview_) return no_preview_;
   return tr("About %L1 nodes instead of %L2, × %3.")
       .arg(preview_->nodes_after, 0, 'f', 0)
       .arg(preview_->nodes_before, 0, 'f', 0)
@@ -238,15 +243,17 @@ void FlowPanel::count() {
   const auto state = session_.shown_state();
   const auto study = session_.study_value();
   if (!state || !state->flow || !study->flow || session_.activity() != Activity::idle) return;
-  if (worker_.busy()) {
+  if (worker_.busy()) {  // with what was asked before
+    worker_.cancel();
     wait_.start();
     return;
   }
   worker_.start([this, state, study](const Progress& progress) -> Worker::Done {
     const Result<FlowPreview> found = preview_flow(*state, *study, progress);
     return [this, state, study, found] {
-      if (!found) return;
-      preview_ = *found;
+      preview_ = found ? std::optional(*found) : std::nullopt;
+      no_preview_ = found ? QString() : QString::fromStdString(found.error().message);
+      if (!found && found.error().code == Code::cancelled) return;
       previewed_ = state;
       previewed_with_ = *study->flow;
     };

@@ -38,6 +38,7 @@ class FlowPanel : public QWidget {
   void refresh();
   void show_flow();
   void count();
+  bool is_previewed() const;
   QString preview_text() const;
 
   Session& session_;
@@ -54,6 +55,7 @@ class FlowPanel : public QWidget {
   int merge_ = 0;
   QTimer wait_;
   std::optional<FlowPreview> preview_;
+  QString no_preview_;  ///< why there is none
   std::shared_ptr<const MeshState> previewed_;
   StudyFlow previewed_with_;
   std::shared_ptr<const MeshState> plotted_;

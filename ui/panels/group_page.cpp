@@ -204,9 +204,8 @@ void GroupPage::refresh() {
   for (std::size_t k = 0; k < g->floods.size(); ++k) {
     const Flood& flood = g->floods[k];
     add(tr("from (%1, %2, %3) up to %4°")
-            .arg(flood.point[0], 0, 'g', 4)
-            .arg(flood.point[1], 0, 'g', 4)
-            .arg(flood.point[2], 0, 'g', 4)
+            .arg(units::number(flood.point[0]), units::number(flood.point[1]),
+                 units::number(flood.point[2]))
             .arg(flood.angle / degree, 0, 'f', 0),
         flood_list, k);
   }

@@ -58,9 +58,7 @@ QString QualityPanel::csv() const {
 
 void QualityPanel::save(const QString& file) {
   if (file.isEmpty()) return;
-  const Result<void> written = save_figures(file, csv(), *this);
-  Q_EMIT session_.logged(written ? tr("Wrote %1").arg(file)
-                                 : QString::fromStdString(written.error().message));
+  session_.wrote(file, save_figures(file, csv(), *this));
 }
 
 void QualityPanel::resizeEvent(QResizeEvent*) {

@@ -67,7 +67,6 @@ void SizingPage::make_shape(Form* form) {
   faces_ = styled_label({}, "soft");
   form->add(tr("Faces"), faces_);
   depth_ = length_box("depth", tr("How far below the faces the size holds"));
-  depth_->setSpecialValueText(units::length(0));
   form->add(tr("Depth"), depth_);
   for (PointBox* box : {center_, end_, size_})
     connect(box, &PointBox::edited, this, &SizingPage::edit_shape);
@@ -135,10 +134,9 @@ void SizingPage::edit_asked() {
   edit(tr("What %1 asks"), [this](SizingObject& o) {
     auto* c = std::get_if<SizeCorrection>(&o.asks);
     if (!c) return;
-    if (c->size)
-      c->size = value_->value() * units::per_unit();
-    else
-      c->factor = value_->value();
+    // The box shows a size rounded: what was not changed there stays as it is.
+    if (sender() == value_ && c->size) c->size = value_->value() * units::per_unit();
+    if (sender() == value_ && c->factor) c->factor = value_->value();
     c->gradation = gradation_->value();
     c->keep_directions = directions_->isChecked();
   });
@@ -151,6 +149,7 @@ void SizingPage::refresh() {
   const QSignalBlocker block[] = {QSignalBlocker(radius_), QSignalBlocker(depth_),
                                   QSignalBlocker(value_), QSignalBlocker(gradation_),
                                   QSignalBlocker(directions_)};
+  depth_->setSpecialValueText(units::length(0));
   name_->setText(QString::fromStdString(object.name));
   body_->clear();
   if (!std::holds_alternative<FacesShape>(object.shape) || session_.shapes().size() == 1)

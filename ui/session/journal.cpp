@@ -52,6 +52,12 @@ void Journal::add(const QString& line) {
 
 void Journal::follow_edits() {
   const QUndoStack& stack = *session_.undo_stack();
+  if (stack.count() == 0) {  // another study is open
+    done_ = 0;
+    last_step_.clear();
+    undone_.clear();
+    return;
+  }
   const int done = stack.index();
   const QString step = done > 0 ? stack.text(done - 1) : QString();
   if (done < done_)

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <string>
 #include <system_error>
@@ -67,6 +68,12 @@ std::vector<Recovery::Left> Recovery::left_behind() const {
     const Result<std::string> target = read_file(target_file(file));
     left.push_back({file, target ? fs::path(*target) : fs::path()});
   }
+  const auto written = [](const Left& one) {
+    std::error_code unknown;
+    return fs::last_write_time(one.file, unknown);
+  };
+  std::sort(left.begin(), left.end(),
+            [&](const Left& a, const Left& b) { return written(a) < written(b); });
   return left;
 }
 

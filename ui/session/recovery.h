@@ -28,6 +28,7 @@ class Recovery : public QObject {
     std::filesystem::path file;
     std::filesystem::path made_for;  ///< empty: it was never saved
   };
+  /// The latest last.
   std::vector<Left> left_behind() const;
   static void discard(const Left& left);
   /// Writes what is unsaved now, without waiting for the user to pause.

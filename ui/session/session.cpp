@@ -207,7 +207,9 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
                 read->parts.empty() ? QString() : box_size(read->parts.back().surface);
             if (!add) read_with_ = params;
             take_parts(std::move(*read), inputs, add);
-            if (!no_unit.isEmpty() && unit == 1) Q_EMIT unit_assumed(no_unit, size);
+            // Read again it takes the place of the study: only where it is all there is.
+            if (!no_unit.isEmpty() && unit == 1 && !add && inputs.size() == 1)
+              Q_EMIT unit_assumed(no_unit, size);
           };
         });
 }
@@ -293,7 +295,9 @@ void Session::save(const std::filesystem::path& file) {
           if (state) {
             if (made_of) content.mesh_study = *made_of;
             content.write_mesh = [&](const std::filesystem::path& vtu) -> Result<void> {
-              Result<ExportCertificate> written = services_.export_mesh(vtu, *state, *study);
+              // The names are those it was made with.
+              Result<ExportCertificate> written =
+                  services_.export_mesh(vtu, *state, made_of ? *made_of : *study);
               if (!written) return written.error();
               return {};
             };
@@ -363,6 +367,7 @@ void Session::open_mesh(const std::filesystem::path& file) {
       if (!read) return report(read.error());
       Study study;
       study.name = file.stem().string();
+      project_ = {};
       replace_all(std::move(study), {}, 0);
       add_iteration(iteration_of(std::make_shared<MeshState>(std::move(*read)), faces));
     };
@@ -416,6 +421,7 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
   selection_.clear();
   item_.reset();
   file_.clear();
+  opened_mesh_.reset();
   undo_.clear();
   saved_ = study_to_json(study);
   compared_.reset();
@@ -426,6 +432,11 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
   Q_EMIT parts_changed();
   Q_EMIT study_changed();
   select(has_bodies() ? static_cast<int>(first_new) : -1);
+}
+
+void Session::wrote(const QString& file, const Result<void>& written) {
+  if (!written) return report(written.error());
+  Q_EMIT logged(tr("Wrote %1").arg(file));
 }
 
 void Session::remove_part(int index) {

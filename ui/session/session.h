@@ -130,6 +130,8 @@ class Session : public QObject {
   void run();
   /// Looks for overlaps of the bodies, and for gaps between them narrower than `gap_width` mm.
   void look_for_overlaps(double gap_width);
+  /// Tells what became of a file that a panel wrote.
+  void wrote(const QString& file, const Result<void>& written);
   /// Solves the flow through the shown mesh, which carries it from then on.
   void solve_flow();
   bool can_flow() const { return activity_ == Activity::idle && shown_state() != nullptr; }

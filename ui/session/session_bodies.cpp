@@ -135,6 +135,9 @@ void Session::solve_flow() {
                               .arg(fields.residuals.size() - 1)
                               .arg(fields.rate(), 0, 'g', 5)
                               .arg(seconds, 0, 'f', 1));
+            // It is the same mesh for the report as well.
+            if (outcome_ && outcome_->state == state) outcome_->state = flowing;
+            if (opened_mesh_ == state) opened_mesh_ = flowing;
             for (std::size_t k = 0; k < iterations_.size(); ++k) {
               if (iterations_[k].state != state) continue;
               iterations_[k].state = flowing;

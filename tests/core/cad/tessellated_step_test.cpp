@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "core/cad/load_parts.h"
@@ -45,6 +46,24 @@ TEST(TessellatedStep, ReadsStripsFansAndTriangles) {
   EXPECT_GT(facet_normal<3>(bodies[0].soup[0]).dot(Vec<3>(-1, 0, 0)) *
                 facet_normal<3>(bodies[0].soup[1]).dot(Vec<3>(0, 0, -1)),
             0);
+}
+
+TEST(TessellatedStep, ReadsWhatIsWrittenInOtherWays) {
+  std::string text = tetrahedron("(CONVERSION_BASED_UNIT('FOOT',#9)LENGTH_UNIT()NAMED_UNIT(#8))");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, text.npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  replace("'corner'", "'driver''s, seat (2)'");
+  replace("TESSELLATED_SOLID(", "TESSELLATED_SOLID (");
+  replace("(1.,0.,0.)", "(+1.,0.,-0.)");
+  const auto bodies = tessellated_bodies(text);
+  ASSERT_EQ(bodies.size(), 1u);
+  EXPECT_EQ(bodies[0].name, "driver''s, seat (2)");
+  const auto surface = surface_from_soup(bodies[0].soup);
+  ASSERT_TRUE(surface.ok()) << surface.error().message;
+  EXPECT_NEAR(enclosed_measure(*surface), std::pow(304.8, 3) / 6, 1e-6);
 }
 
 TEST(TessellatedStep, LoadsAsABody) {

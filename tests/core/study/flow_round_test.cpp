@@ -54,6 +54,20 @@ TEST(FlowRound, TheCaseIsThatOfTheGroups) {
   EXPECT_FALSE(has_flow(study, "plate"));
 }
 
+TEST(FlowRound, ARefusalNamesGateAndBody) {
+  Study study = through_the_plate(2, FlowMethod::velocity);
+  study.groups[0].pressure = 1;
+  study.groups[0].rate = 7;
+  const auto both = check_request(study, {plate("plate")});
+  ASSERT_FALSE(both.ok());
+  EXPECT_EQ(both.error().message, "Gate \"in\" has a pressure and a rate.");
+  study.groups[0].rate.reset();
+  study.groups[1].kind = GroupKind::walls;
+  const auto closed = check_request(study, {plate("plate")});
+  ASSERT_FALSE(closed.ok());
+  EXPECT_NE(closed.error().message.find("\"plate\""), std::string::npos) << closed.error().message;
+}
+
 TEST(FlowRound, WhatCannotFlowIsRefusedBeforeTheRun) {
   Study study = through_the_plate(2, FlowMethod::velocity);
   EXPECT_TRUE(check_request(study, {plate("plate")}).ok());

@@ -317,12 +317,6 @@ TEST(StudyFile, EveryMistakeIsNamed) {
   }
 }
 
-TEST(StudyFile, InputsAreSeenFromTheStudysFolder) {
-  const auto files = input_files(full_study(), "/data/job");
-  EXPECT_EQ(files.at(0), "/data/job/parts/a.step");
-  EXPECT_EQ(files.at(1), "/abs/b.stl");
-}
-
 TEST(Settings, APartWithoutAnEntryGetsTheDefaults) {
   const Study study = full_study();
   EXPECT_EQ(settings_of(study, "cover").layers, 6);
