@@ -399,7 +399,7 @@ void MainWindow::update_title() {
                            ? QString::fromStdString(session_->study().name)
                            : QString::fromStdString(session_->file().stem().string());
   setWindowTitle(session_->empty() ? tr("Lamella") : tr("%1[*] – Lamella").arg(name));
-  setWindowModified(session_->modified());
+  setWindowModified(session_->modified() || session_->mesh_unsaved());
 }
 
 void MainWindow::update_status() {

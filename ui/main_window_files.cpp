@@ -112,12 +112,13 @@ bool MainWindow::save(bool ask_name) {
 }
 
 bool MainWindow::may_drop() {
-  if (!session_->modified()) return true;
+  if (!session_->modified() && !session_->mesh_unsaved()) return true;
   QMessageBox box(QMessageBox::Question, tr("Unsaved changes"),
-                  tr("The study “%1” has changes that are not saved.")
+                  (session_->modified() ? tr("The study “%1” has changes that are not saved.")
+                                        : tr("The mesh of “%1” is not saved."))
                       .arg(QString::fromStdString(session_->study().name)),
                   QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
-  box.setInformativeText(tr("Save them?"));
+  box.setInformativeText(session_->modified() ? tr("Save them?") : tr("Save it in a project?"));
   box.setDefaultButton(QMessageBox::Save);
   const int answer = box.exec();
   return answer == QMessageBox::Discard || (answer == QMessageBox::Save && save(false));

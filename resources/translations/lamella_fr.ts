@@ -1918,6 +1918,14 @@ rendu uniforme sur les éléments</translation>
         <source>Cancel it, or save when it is done.</source>
         <translation>Annulez-la, ou enregistrez quand elle est finie.</translation>
     </message>
+    <message>
+        <source>The mesh of “%1” is not saved.</source>
+        <translation>Le maillage de « %1 » n&apos;est pas enregistré.</translation>
+    </message>
+    <message>
+        <source>Save it in a project?</source>
+        <translation>L&apos;enregistrer dans un projet ?</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::MeshPage</name>

@@ -312,9 +312,11 @@ void Session::save(const std::filesystem::path& file) {
             }
           }
           Result<std::vector<std::string>> written = save_project(content, file, progress);
-          return [this, written = std::move(written), study, file] {
+          const bool with_mesh = state && is_project(file);
+          return [this, written = std::move(written), study, file, with_mesh] {
             set_activity(Activity::idle);
             if (!written) return report(written.error());
+            if (with_mesh) mesh_unsaved_ = false;
             file_ = file;
             saved_ = study_to_json(*study);
             compared_.reset();
@@ -428,6 +430,7 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
   study_ = std::make_shared<const Study>(std::move(study));
   follow_bodies();
   clear_iterations();
+  mesh_unsaved_ = false;
   // What shows the parts has to have them before it hears of their settings.
   Q_EMIT parts_changed();
   Q_EMIT study_changed();
@@ -583,7 +586,10 @@ void Session::finish_run(Result<Outcome> result, std::shared_ptr<const MeshFaces
     return;
   }
   outcome_ = std::move(*result);
-  if (outcome_->state) keep_best(outcome_->state, faces);
+  if (outcome_->state) {
+    mesh_unsaved_ = true;
+    keep_best(outcome_->state, faces);
+  }
   for (const BodyOutcome& body : outcome_->bodies) {
     Q_EMIT logged(tr("%1: first mesh by %2, layers %3 asked, %4 on average (5 %: %5)")
                       .arg(text(body.name), text(body.first_mesh_by))

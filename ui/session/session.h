@@ -119,6 +119,8 @@ class Session : public QObject {
   const std::filesystem::path& file() const { return file_; }
   /// Whether the study differs from what was opened or saved last.
   bool modified() const;
+  /// Whether a run, or a flow, has left a mesh that no project holds.
+  bool mesh_unsaved() const { return mesh_unsaved_; }
   /// Opens a study and its parts. One that was `recovered` keeps the file it was made for, which
   /// may be none, and counts as modified.
   void open_study(const std::filesystem::path& file,
@@ -228,6 +230,7 @@ class Session : public QObject {
   Project project_;  // as it was opened; its copies of inputs are in use
   std::shared_ptr<const MeshState> opened_mesh_;
   Activity activity_ = Activity::idle;
+  bool mesh_unsaved_ = false;
   int shown_ = -1;
   int selected_ = -1;
   std::vector<int> selection_;

@@ -138,6 +138,7 @@ void Session::solve_flow() {
             // It is the same mesh for the report as well.
             if (outcome_ && outcome_->state == state) outcome_->state = flowing;
             if (opened_mesh_ == state) opened_mesh_ = flowing;
+            mesh_unsaved_ = has_bodies();
             for (std::size_t k = 0; k < iterations_.size(); ++k) {
               if (iterations_[k].state != state) continue;
               iterations_[k].state = flowing;
