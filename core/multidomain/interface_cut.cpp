@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
 
 #include "core/base/parallel.h"
+#include "core/mesh/adjacency.h"
 #include "core/mesh/element_locator.h"
 #include "core/multidomain/border_fit.h"
 #include "core/multidomain/border_sides.h"
@@ -81,22 +83,20 @@ class Cutter {
     out.metric.push_back(Metric<3>::Identity());
     for (std::size_t n = 1; n < mesh_.metric.size(); ++n)
       out.metric.push_back(mesh_.metric[n].full());
-    for (const bool wall : {true, false}) {
-      for (std::int32_t e = 0; e < mesh_.count(); ++e) {
-        if (!mesh_.topo.alive(e)) continue;
-        if (!mesh_.topo.is_virtual(e)) {
-          if (!wall) continue;
-          mesh.elements.push_back(mesh_.topo.elements[e]);
-          mesh.element_body.push_back(mesh_.topo.label[e]);
-        } else if (mesh_.is_wall(e) == wall) {
-          const auto f = static_cast<std::size_t>(mesh_.topo.label[e]);
-          mesh.facets.push_back(Topology<3>::facet_of(mesh_.topo.elements[e]));
-          mesh.facet_group.push_back(wall ? original.facet_group[f] : 0);
-          mesh.facet_face.push_back(wall ? original.facet_face[f] : 0);
-        }
+    for (std::int32_t e = 0; e < mesh_.count(); ++e) {
+      if (!mesh_.topo.alive(e)) continue;
+      if (!mesh_.topo.is_virtual(e)) {
+        mesh.elements.push_back(mesh_.topo.elements[e]);
+        mesh.element_body.push_back(mesh_.topo.label[e]);
+      } else if (mesh_.is_wall(e)) {
+        const auto f = static_cast<std::size_t>(mesh_.topo.label[e]);
+        mesh.facets.push_back(Topology<3>::facet_of(mesh_.topo.elements[e]));
+        mesh.facet_group.push_back(original.facet_group[f]);
+        mesh.facet_face.push_back(original.facet_face[f]);
       }
-      if (wall) out.outer = mesh.facets.size();
     }
+    out.outer = mesh.facets.size();
+    add_interfaces(mesh);
     out.features.assign(mesh_.features.begin(), mesh_.features.end());
     out.snapped = mesh_.moves;
     out.added = mesh.node_count() - old_nodes_;
@@ -105,6 +105,68 @@ class Cutter {
   }
 
  private:
+  /// The faces between regions, once slivers of a third one between them are gone.
+  void add_interfaces(SimplexMesh<3>& mesh) const {
+    const auto uses = face_uses<3>(mesh.elements, mesh.points.size());
+    give_slivers_away(uses, mesh);
+    for_each_face<3>(uses, [&](std::size_t first, std::size_t last) {
+      if (last - first != 2) return;
+      const FaceUse<3>*low = &uses[first], *high = &uses[first + 1];
+      if (mesh.element_body[low->element] == mesh.element_body[high->element]) return;
+      if (mesh.element_body[low->element] > mesh.element_body[high->element]) std::swap(low, high);
+      mesh.facets.push_back(opposite_facet<3>(mesh.elements[low->element], low->local));
+      mesh.facet_group.push_back(0);
+      mesh.facet_face.push_back(0);
+    });
+  }
+
+  /// Where several borders meet, all nodes of an element may lie on each, and none of the regions
+  /// there may have claimed it. Such islands of another region go to the neighbors with whom they
+  /// share most.
+  void give_slivers_away(const std::vector<FaceUse<3>>& uses, SimplexMesh<3>& mesh) const {
+    std::vector<std::array<std::int32_t, 4>> beside(mesh.elements.size(), {-1, -1, -1, -1});
+    for_each_face<3>(uses, [&](std::size_t first, std::size_t last) {
+      if (last - first != 2) return;
+      beside[uses[first].element][uses[first].local] = uses[first + 1].element;
+      beside[uses[first + 1].element][uses[first + 1].local] = uses[first].element;
+    });
+    std::vector<char> lost(mesh.elements.size());
+    parallel_each(lost.size(), params_.threads, {}, [&](std::size_t e) {
+      const Corners<3> p = mesh.corners(mesh.elements[e]);
+      lost[e] = partition_.region_of((p[0] + p[1] + p[2] + p[3]) / 4) != mesh.element_body[e];
+    });
+    // What hangs on to its own region was counted to it on purpose.
+    std::vector<std::int32_t> front;
+    for (std::size_t e = 0; e < lost.size(); ++e)
+      if (!lost[e]) front.push_back(static_cast<std::int32_t>(e));
+    while (!front.empty()) {
+      const std::int32_t e = front.back();
+      front.pop_back();
+      for (const std::int32_t next : beside[e])
+        if (next >= 0 && lost[next] && mesh.element_body[next] == mesh.element_body[e]) {
+          lost[next] = 0;
+          front.push_back(next);
+        }
+    }
+    for (bool any = true; any;) {
+      any = false;
+      for (std::size_t e = 0; e < lost.size(); ++e) {
+        if (!lost[e]) continue;
+        std::map<std::int32_t, double> shared;
+        for (int k = 0; k < 4; ++k)
+          if (beside[e][k] >= 0 && !lost[beside[e][k]])
+            shared[mesh.element_body[beside[e][k]]] +=
+                facet_normal<3>(mesh.corners(opposite_facet<3>(mesh.elements[e], k))).norm();
+        if (shared.empty()) continue;
+        mesh.element_body[e] = std::max_element(shared.begin(), shared.end(), [](auto& a, auto& b) {
+                                 return a.second < b.second;
+                               })->first;
+        lost[e] = 0;
+        any = true;
+      }
+    }
+  }
+
   BorderFit fit() { return {mesh_, partition_, zone_, params_, phi_}; }
   double phi_at(const Vec<3>& x) const { return partition_.zone(zone_).distance(x); }
   /// The element that contains x, seen from the place of x in the mesh that was given.

@@ -4,6 +4,8 @@ namespace lamella {
 
 namespace {
 
+constexpr double kRounding = 1e-12;  // of the coordinates
+
 /// Without a sign, the normal towards the other side.
 template <int D>
 ZoneDistance<D> facing(const ZoneDistance<D>& own) {
@@ -41,9 +43,14 @@ ZoneDistance<D> Partition<D>::zone_at(int k, const Vec<D>& x, double reach) cons
 
 template <int D>
 int Partition<D>::region_of(const Vec<D>& x) const {
-  for (int k = 0; k < background(); ++k)
-    if (zone_at(k, x, 0).distance < 0) return k;
-  return background();
+  int touched = background();
+  const double rounding = kRounding * x.cwiseAbs().maxCoeff();
+  for (int k = 0; k < background(); ++k) {
+    const double distance = zone_at(k, x, 0).distance;
+    if (distance < 0) return k;
+    if (distance <= rounding && touched == background()) touched = k;
+  }
+  return touched;
 }
 
 template <int D>

@@ -34,6 +34,8 @@ class Partition {
   const Zone<D>& zone(int region) const { return *regions_[region].zone; }
   const Box<D>& box(int region) const { return boxes_[region]; }
 
+  /// A point that rounding puts on the border of regions without anything between them belongs to
+  /// one of them.
   int region_of(const Vec<D>& x) const;
   /// Signed distance to the part of the region that is its own, max(phi_k, -min phi_j) with the j
   /// of higher priority. Beyond the zone's own box by more than `reach` mm a positive lower bound.

@@ -22,6 +22,7 @@ Triangle corners_of(const ReferenceSurface<3>& s, std::int32_t facet) {
 struct Sample {
   Vec<3> x;
   Nearest<3> near;
+  double depth = 0;  // under what covers it
 };
 
 /// Branch and bound on one triangle: it is cut until no piece can hold a point that is farther than
@@ -29,8 +30,9 @@ struct Sample {
 /// corner; so pieces are cut along the sides of the facets below them.
 class Search {
  public:
-  Search(const ReferenceSurface<3>& to, const Locator<3>& locator, double known, double resolution)
-      : to_(to), locator_(locator), known_(known), resolution_(resolution) {}
+  Search(const ReferenceSurface<3>& to, const Locator<3>& locator, double known, double resolution,
+         const Covered& covered)
+      : to_(to), locator_(locator), known_(known), resolution_(resolution), covered_(covered) {}
 
   FarthestPoint operator()(const Triangle& t) {
     pieces_.push_back({sample(t[0]), sample(t[1]), sample(t[2])});
@@ -46,9 +48,9 @@ class Search {
   using Piece = std::array<Sample, 3>;
 
   Sample sample(const Vec<3>& x) {
-    const Sample s{x, *locator_.nearest(x)};
+    const Sample s{x, *locator_.nearest(x), covered_ ? covered_(x) : 0};
     const double d = std::sqrt(s.near.distance2);
-    if (d > worst_.distance) worst_ = {d, x};
+    if (d > worst_.distance && !(s.depth > 0)) worst_ = {d, x};
     return s;
   }
 
@@ -61,6 +63,9 @@ class Search {
     }
     // Every point of a triangle is within longest / sqrt(3) of a corner.
     if (std::sqrt(most2) + std::sqrt(longest2 / 3) <= enough) return true;
+    for (const Sample& s : p)
+      if (s.depth * s.depth > longest2) return true;
+    if (longest2 <= resolution_ * resolution_) return true;
     for (int k = 0; k < 3; ++k) {
       const Triangle facet = corners_of(to_, p[k].near.facet);
       bool below = true;
@@ -123,6 +128,7 @@ class Search {
   const ReferenceSurface<3>& to_;
   const Locator<3>& locator_;
   double known_, resolution_;
+  const Covered& covered_;
   std::vector<Piece> pieces_;
   FarthestPoint worst_;
 };
@@ -137,7 +143,8 @@ ReferenceSurface<3> surface_of(const SimplexMesh<3>& mesh) {
 }  // namespace
 
 Result<FarthestPoint> farthest_point(const ReferenceSurface<3>& from, const ReferenceSurface<3>& to,
-                                     double resolution, int threads, const Progress& progress) {
+                                     double resolution, int threads, const Progress& progress,
+                                     const Covered& covered) {
   const Locator<3> locator(to);
   if (locator.empty() || from.facets.empty())
     return Error{Code::bad_input, "There is no surface to measure the distance to.", ""};
@@ -155,13 +162,13 @@ Result<FarthestPoint> farthest_point(const ReferenceSurface<3>& from, const Refe
         const Triangle p = corners_of(from, static_cast<std::int32_t>(f));
         for (const Vec<3>& x : {p[0], p[1], p[2], Vec<3>((p[0] + p[1] + p[2]) / 3)}) {
           const double d = std::sqrt(locator.nearest(x)->distance2);
-          if (d > of_facet[f].distance) of_facet[f] = {d, x};
+          if (d > of_facet[f].distance && !(covered && covered(x) > 0)) of_facet[f] = {d, x};
         }
       });
   const FarthestPoint first = largest(of_facet);
   complete = complete &&
              parallel_each(of_facet.size(), threads, progress.portion(0.2, 1), [&](std::size_t f) {
-               Search search(to, locator, first.distance, resolution);
+               Search search(to, locator, first.distance, resolution, covered);
                of_facet[f] = search(corners_of(from, static_cast<std::int32_t>(f)));
              });
   if (!complete) return cancelled_error();
@@ -171,11 +178,12 @@ Result<FarthestPoint> farthest_point(const ReferenceSurface<3>& from, const Refe
 
 Result<BoundaryDistance> boundary_distance(const SimplexMesh<3>& mesh,
                                            const ReferenceSurface<3>& surface, int threads,
-                                           const Progress& progress) {
+                                           const Progress& progress, const Covered& covered) {
   const ReferenceSurface<3> own = surface_of(mesh);
   Result<FarthestPoint> to = farthest_point(own, surface, 0, threads, progress.portion(0, 0.5));
   if (!to) return to.error();
-  Result<FarthestPoint> from = farthest_point(surface, own, 0, threads, progress.portion(0.5, 1));
+  Result<FarthestPoint> from =
+      farthest_point(surface, own, 0, threads, progress.portion(0.5, 1), covered);
   if (!from) return from.error();
   return BoundaryDistance{*to, *from};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
@@ -22,18 +23,23 @@ struct BoundaryDistance {
   double largest() const { return std::max(to_surface.distance, from_surface.distance); }
 };
 
-/// Farthest point of `from` from `to` (the one-sided Hausdorff distance). The distance is that of
-/// the place told, and no point of `from` lies farther by more than `resolution` mm (0: 1e-5 of the
-/// diagonal). Does not depend on the number of threads (0: all cores). Errors: bad_input (empty
-/// surface), cancelled.
+/// How deep a point lies under something else, mm: no more than the distance to where that ends;
+/// 0 or less where it does not.
+using Covered = std::function<double(const Vec<3>&)>;
+
+/// Farthest point of `from`, as far as it is not covered, from `to` (the one-sided Hausdorff
+/// distance). The distance is that of the place told, and no point of `from` lies farther by more
+/// than `resolution` mm (0: 1e-5 of the diagonal). Does not depend on the number of threads (0: all
+/// cores). Errors: bad_input (empty surface), cancelled.
 Result<FarthestPoint> farthest_point(const ReferenceSurface<3>& from, const ReferenceSurface<3>& to,
                                      double resolution = 0, int threads = 0,
-                                     const Progress& progress = {});
+                                     const Progress& progress = {}, const Covered& covered = {});
 
-/// Both directions, between the facets of the mesh and the surface. Errors: those of
-/// `farthest_point`.
+/// Both directions, between the facets of the mesh and the surface, as far as it is not covered.
+/// Errors: those of `farthest_point`.
 Result<BoundaryDistance> boundary_distance(const SimplexMesh<3>& mesh,
                                            const ReferenceSurface<3>& surface, int threads = 0,
-                                           const Progress& progress = {});
+                                           const Progress& progress = {},
+                                           const Covered& covered = {});
 
 }  // namespace lamella

@@ -384,7 +384,8 @@ Result<Layers> measure_boundary_layer(const SimplexMesh<3>& mesh,
 }
 
 Result<Layers> measure_layers_within(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
-                                     int asked, int threads, const Progress& progress) {
+                                     int asked, int threads, const Progress& progress,
+                                     const std::function<bool(const Vec<3>&)>& inside) {
   if (asked < 1) return Error{Code::usage, "The number of layers asked must be at least 1.", ""};
   const Locator<3> locator(surface);
   if (locator.empty())
@@ -393,9 +394,11 @@ Result<Layers> measure_layers_within(const SimplexMesh<3>& mesh, const Reference
   const ElementLocator<3> elements(mesh, progress.portion(0, 0.2));
   if (progress.cancelled()) return cancelled_error();
   const std::vector<Sample> samples = samples_of(surface, kSampleSpacing * locator.diagonal());
+  const double skin = 1e-6 * locator.diagonal();
   std::vector<Place> places(samples.size());
   if (!parallel_each(places.size(), threads, progress.portion(0.2, 1), [&](std::size_t s) {
         const Sample& sample = samples[s];
+        if (inside && !inside(sample.at - skin * locator.normal(sample.facet))) return;
         places[s] = measure_within(mesh, neighbors, elements, locator, sample.facet, sample.at);
         places[s].area = sample.area;
         places[s].corners = surface.facets[sample.facet];

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/geometry/surface.h"
@@ -48,8 +50,10 @@ Result<Layers> measure_boundary_layer(const SimplexMesh<3>& mesh,
 
 /// The same for a body that lies anywhere in the mesh, its surface crossing elements: from points
 /// on `surface`, no farther apart than a fiftieth of its diagonal, to the wall of `surface`
-/// beyond. What lies outside of the mesh does not count; `at_facet` stays empty.
+/// beyond. What lies outside of the mesh does not count, nor points just below which `inside` says
+/// that the body is not; `at_facet` stays empty.
 Result<Layers> measure_layers_within(const SimplexMesh<3>& mesh, const ReferenceSurface<3>& surface,
-                                     int asked, int threads = 0, const Progress& progress = {});
+                                     int asked, int threads = 0, const Progress& progress = {},
+                                     const std::function<bool(const Vec<3>&)>& inside = {});
 
 }  // namespace lamella

@@ -33,6 +33,7 @@ constexpr double kSlope = 1;         // growth of sizes across fuzzy borders wit
 constexpr double kGrowth = 0.7;      // of a neighbor's sizes with the distance in its metric: ln 2
 constexpr double kChordShare = 0.6;  // of the tolerance, that chords of borders are asked for
 constexpr int kRoundsToCut = 2;      // adaptions to fuzzy borders before the mesh is cut
+constexpr double kUnseen = 0.01;     // of the tolerance: what lies deeper in others is no border
 
 /// Regions of fuzzy interfaces are names of elements: nothing is to be held at their steps.
 SimplexMesh<3> as_one_body(SimplexMesh<3> mesh) {
@@ -134,12 +135,18 @@ class AssemblyLoop {
 
   /// Closes the books, the figures with a finer division at the borders than in the loop.
   Result<std::vector<BodyOutcome>> finish(const Progress& progress) {
-    for (std::size_t m = 0; exact_ && m + 1 < of_.members.size(); ++m) {
+    for (std::size_t m = 0; exact_ && m < of_.members.size(); ++m) {
       if (of_.body_of[m] < 0) continue;
+      const Member& member = of_.members[m];
       const SimplexMesh<3> body = extract_body(current_.mesh, of_.body_of[m]);
       if (body.elements.empty()) continue;
+      Covered covered;
+      if (member.bounds)
+        covered = [&](const Vec<3>& x) {
+          return of_.beyond(static_cast<int>(m), x) - kUnseen * of_.chord_tolerance;
+        };
       Result<BoundaryDistance> distance =
-          boundary_distance(body, of_.members[m].part.surface, options_.threads, progress);
+          boundary_distance(body, member.walls(), options_.threads, progress, covered);
       if (!distance) return distance.error();
       of_.outcomes[m].boundary_distance = *distance;
     }
@@ -154,6 +161,7 @@ class AssemblyLoop {
     params.threads = options_.threads;
     Result<Filling> filling = filling_ratios<3>(current_.mesh, *of_.partition, params, progress);
     if (filling) count(filling_errors<3>(current_.mesh, *filling));
+    if (of_.full) of_.outcomes.pop_back();
     return of_.outcomes;
   }
 
@@ -245,8 +253,7 @@ class AssemblyLoop {
     exact.wall = wall();
     std::vector<ReferenceSurface<3>> surfaces;
     for (std::size_t m = 0; m + 1 < of_.members.size(); ++m)
-      surfaces.push_back(of_.members[m].endless ? ReferenceSurface<3>{}
-                                                : of_.members[m].part.surface);
+      surfaces.push_back(of_.borders_of(of_.members[m]));
     Result<Exact> made =
         exact_interfaces(adapted.mesh, adapted.metric, *of_.partition, surfaces, exact,
                          progress.portion(0, 0.6, "cutting along the borders"), natural_alone());
@@ -352,6 +359,7 @@ class AssemblyLoop {
         filling_ratios<3>(next.mesh, *of_.partition, filling_params, progress.portion(0, 0.1));
     if (!filling) return filling.error();
     next.mesh.bodies = of_.partition->names();
+    if (of_.full) next.mesh.bodies.pop_back();
     for (std::size_t e = 0; e < next.mesh.elements.size(); ++e)
       next.mesh.element_body[e] = filling->main_region(e);
     if (Result<void> asked = ask(next, *filling, progress.portion(0.1, 0.4)); !asked) return asked;
@@ -405,7 +413,7 @@ class AssemblyLoop {
     outcome.mesh_volume = 0;
     for (const auto& e : body.elements) outcome.mesh_volume += signed_measure<3>(body.corners(e));
     if (body.elements.empty()) return {};
-    Result<Layers> layers = measure_layers(body, member.part.surface, outcome.layers_asked,
+    Result<Layers> layers = measure_layers(body, member.walls(), outcome.layers_asked,
                                            options_.threads, progress.portion(0, 0.7));
     if (!layers) return layers.error();
     outcome.layers = layers->stats;
@@ -486,9 +494,12 @@ class AssemblyLoop {
     });
     for (std::size_t m = 0; m < of_.members.size(); ++m) {
       const auto at = static_cast<double>(m);
-      Result<Layers> layers = measure_layers_within(state.mesh, of_.members[m].part.surface,
-                                                    of_.outcomes[m].layers_asked, options_.threads,
-                                                    progress.portion(at / count, (at + 1) / count));
+      const auto inside = [&](const Vec<3>& x) {
+        return of_.partition->region_of(x) == static_cast<int>(m);
+      };
+      Result<Layers> layers = measure_layers_within(
+          state.mesh, of_.members[m].walls(), of_.outcomes[m].layers_asked, options_.threads,
+          progress.portion(at / count, (at + 1) / count), inside);
       if (!layers) return layers.error();
       of_.outcomes[m].layers = layers->stats;
       of_.outcomes[m].below = layers->below;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "core/base/parallel.h"
 #include "core/geometry/soup.h"
@@ -49,11 +51,12 @@ class Layout {
     if (Result<void> added = add_bodies(); !added) return added.error();
     if (Result<void> meshed = mesh_domain(domain, meshers, progress); !meshed)
       return meshed.error();
+    if (Result<void> found = find_shares(progress); !found) return found.error();
     add_background(domain);
     for (Member& member : assembly_.members)
       if (Result<void> ready = prepare(member); !ready) return ready.error();
     if (Result<void> chosen = choose_bodies(); !chosen) return chosen.error();
-    if (Result<void> told = tell_overlaps(progress); !told) return told.error();
+    tell_overlaps();
     return std::move(assembly_);
   }
 
@@ -103,11 +106,16 @@ class Layout {
       member.part.surface = std::move(*surface);
       member.part.cad_volume = zone_volume(zone, member.part.surface);
       assembly_.members.push_back(std::move(member));
+      // There is nothing between the cells.
+      assembly_.full = assembly_.full || std::holds_alternative<ZoneCell>(zone.shape);
       regions.push_back({zone.name, make_zone(zone, study_.zones)});
     }
     if (assembly_.members.empty())
       return Error{Code::usage, "The domain holds no body.", "Add a part or a zone to the study."};
-    assembly_.partition = std::make_unique<Partition<3>>(std::move(regions), background_);
+    assembly_.partition = std::make_unique<Partition<3>>(regions, background_);
+    regions_ = std::move(regions);
+    const Part* domain = part_called(background_);
+    assembly_.domain = domain ? surface_zone<3>(domain->surface) : make_zone(hull_, {hull_});
     assembly_.mesh_tolerance = std::max(assembly_.chord_tolerance - chord_error,
                                         kMinGuardShare * assembly_.chord_tolerance);
     return {};
@@ -163,6 +171,7 @@ class Layout {
     Member around;
     around.part.name = background_;
     around.part.surface = surface_of_facets(assembly_.first);
+    around.bounds = around.part.surface;
     const Box<3> box = box_of(around.part.surface);
     double volume = domain ? domain->cad_volume : enclosed_measure(around.part.surface);
     bool known = true;
@@ -175,10 +184,34 @@ class Layout {
       if (!inside) member.part.cad_volume = 0;
       known = known && inside;
       volume -= member.part.cad_volume;
-      append_reversed(member.part.surface, around.part.surface);
+      append_reversed(member.part.surface, *assembly_.domain, *around.bounds);
+      if (!inside && !member.endless) append(around.part.surface, bounds_of(member));
     }
     around.part.cad_volume = known ? volume : 0;
     assembly_.members.push_back(std::move(around));
+  }
+
+  static ReferenceSurface<3>& bounds_of(Member& member) {
+    if (!member.bounds) member.bounds = member.part.surface;
+    return *member.bounds;
+  }
+
+  /// Of what two bodies share the first keeps the volume, and bounds the other.
+  Result<void> find_shares(const Progress& progress) {
+    OverlapOptions options;
+    options.threads = options_.threads;
+    options.contact = assembly_.chord_tolerance;
+    options.gap_width = 2 * assembly_.chord_tolerance;
+    options.within = box_of(surface_of_facets(assembly_.first));
+    Result<OverlapReport> report = find_overlaps(*assembly_.partition, options, progress);
+    if (!report) return report.error();
+    for (const Overlap& o : report->overlaps) {
+      const auto left = intersection_zone<3>({regions_[o.second].zone, assembly_.domain});
+      append_reversed(assembly_.members[o.first].part.surface, *left,
+                      bounds_of(assembly_.members[o.second]));
+    }
+    shares_ = std::move(*report);
+    return {};
   }
 
   /// Detector, sizes by hand and size across borders of a member, and its entry in the books.
@@ -188,7 +221,7 @@ class Layout {
     member.natural = natural_params(study_, member.part);
     if (member.part.name == kBackground && !names_background(study_))
       member.natural.layers = kBackgroundLayers;
-    member.detector = std::make_unique<NaturalDetector>(surface);
+    member.detector = std::make_unique<NaturalDetector>(member.walls());
     Result<SizingField> sizing = SizingField::make(sizing_of(study_, member.part.name), surface);
     if (!sizing) return sizing.error();
     member.sizing = std::move(*sizing);
@@ -210,17 +243,22 @@ class Layout {
     return {};
   }
 
-  /// The 5 % quantile of the smallest natural size on the surface, mm.
+  /// The 5 % quantile of the smallest natural size on what bounds the member, mm.
   double thinnest_layer(const Member& member) const {
     constexpr std::size_t kSamples = 2000;
-    const ReferenceSurface<3>& s = member.part.surface;
+    const ReferenceSurface<3>& s = member.walls();
+    const auto region = static_cast<int>(&member - assembly_.members.data());
     const std::size_t stride = s.facets.size() / kSamples + 1;
     std::vector<double> found((s.facets.size() + stride - 1) / stride);
     parallel_each(found.size(), options_.threads, {}, [&](std::size_t i) {
       const auto& f = s.facets[i * stride];
       const Vec<3> middle = (s.points[f[0]] + s.points[f[1]] + s.points[f[2]]) / 3;
-      found[i] = sizes<3>(member.detector->at(middle, member.natural).metric)[0];
+      found[i] = assembly_.beyond(region, middle) > assembly_.chord_tolerance
+                     ? std::numeric_limits<double>::infinity()
+                     : sizes<3>(member.detector->at(middle, member.natural).metric)[0];
     });
+    found.erase(std::remove(found.begin(), found.end(), std::numeric_limits<double>::infinity()),
+                found.end());
     std::sort(found.begin(), found.end());
     return found.empty() ? diagonal_of(s.points) : found[found.size() / 20];
   }
@@ -230,7 +268,8 @@ class Layout {
     std::vector<Member>& members = assembly_.members;
     assembly_.body_of.assign(members.size(), 0);
     std::vector<std::string> dropped = study_.dropped;
-    if (std::holds_alternative<DomainBodies>(study_.domain->shape)) dropped.push_back(background_);
+    if (std::holds_alternative<DomainBodies>(study_.domain->shape) || assembly_.full)
+      dropped.push_back(background_);
     for (const std::string& name : dropped) {
       const auto it = std::find_if(members.begin(), members.end(),
                                    [&](const Member& m) { return m.part.name == name; });
@@ -239,7 +278,7 @@ class Layout {
                      "What is around the bodies is called \"" + background_ + "\"."};
       assembly_.body_of[it - members.begin()] = -1;
     }
-    if (!dropped.empty() && options_.interfaces == Interfaces::fuzzy)
+    if (dropped.size() > (assembly_.full ? 1 : 0) && options_.interfaces == Interfaces::fuzzy)
       return Error{Code::usage, "Bodies can be dropped from a mesh with exact interfaces only.",
                    "Ask for exact interfaces, or give a domain around the bodies."};
     std::int32_t next = 0;
@@ -249,17 +288,10 @@ class Layout {
     return {};
   }
 
-  /// Overlaps and gaps go to the notes; of what two bodies share the first keeps the volume.
-  Result<void> tell_overlaps(const Progress& progress) {
-    OverlapOptions options;
-    options.threads = options_.threads;
-    options.contact = assembly_.chord_tolerance;
-    options.gap_width = 2 * assembly_.chord_tolerance;
-    options.within = box_of(surface_of_facets(assembly_.first));
-    Result<OverlapReport> report = find_overlaps(*assembly_.partition, options, progress);
-    if (!report) return report.error();
+  /// Overlaps and gaps go to the notes, and from the volumes what others keep.
+  void tell_overlaps() {
     std::vector<BodyOutcome>& of = assembly_.outcomes;
-    for (const Overlap& o : report->overlaps) {
+    for (const Overlap& o : shares_.overlaps) {
       if (of[o.second].cad_volume > 0) of[o.second].cad_volume -= o.volume;
       if (of.back().cad_volume > 0) of.back().cad_volume += o.volume;
       of[o.second].notes.push_back("Overlaps \"" + of[o.first].name + "\" by " +
@@ -267,11 +299,10 @@ class Layout {
                                    " mm deep at " + place_text(o.place) +
                                    " mm, which belongs to the latter.");
     }
-    for (const Gap& g : report->gaps)
+    for (const Gap& g : shares_.gaps)
       of[g.first].notes.push_back("A gap of " + length_text(g.volume) + " mm3 towards \"" +
                                   of[g.second].name + "\", " + length_text(g.least_width) +
                                   " mm wide at " + place_text(g.place) + " mm.");
-    return {};
   }
 
   const Study& study_;
@@ -279,11 +310,51 @@ class Layout {
   const std::vector<Part>& parts_;
   std::string background_ = kBackground;
   StudyZone hull_;
+  OverlapReport shares_;
+  std::vector<Region<3>> regions_;
   std::string first_mesh_by_;
   Assembly assembly_;
 };
 
 }  // namespace
+
+double Assembly::beyond(int region, const Vec<3>& x) const {
+  return std::max(partition->distance(region, x), domain->at(x).distance);
+}
+
+ReferenceSurface<3> Assembly::borders_of(const Member& member) const {
+  ReferenceSurface<3> s = member.part.surface;
+  if (!member.endless) return s;
+  const double on = 1e-9 * diagonal_of(s.points);
+  std::map<std::array<std::int32_t, 2>, int> edges;
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f < s.facets.size(); ++f) {
+    const auto v = s.facets[f];
+    const Vec<3> middle = (s.points[v[0]] + s.points[v[1]] + s.points[v[2]]) / 3;
+    if (domain->at(middle).distance >= -on) continue;
+    for (int k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(v[k], v[(k + 1) % 3]);
+      ++edges[{a, b}];
+    }
+    s.facet_face[kept] = s.facet_face[f];
+    s.facets[kept++] = v;
+  }
+  s.facets.resize(kept);
+  s.facet_face.resize(kept);
+  std::set<std::int32_t> held;
+  const auto gone = [&](const std::array<std::int32_t, 2>& e) {
+    const auto [a, b] = std::minmax(e[0], e[1]);
+    const auto it = edges.find({a, b});
+    if (it == edges.end() || it->second < 2) return true;
+    held.insert({a, b});
+    return false;
+  };
+  s.feature_edges.erase(std::remove_if(s.feature_edges.begin(), s.feature_edges.end(), gone),
+                        s.feature_edges.end());
+  const auto loose = [&](std::int32_t c) { return held.count(c) == 0; };
+  s.corners.erase(std::remove_if(s.corners.begin(), s.corners.end(), loose), s.corners.end());
+  return s;
+}
 
 void put_in_groups(const FaceGroups& of, std::int32_t first_face, SimplexMesh<3>& mesh) {
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {

@@ -16,6 +16,11 @@ namespace lamella {
 /// A body or what is around all of them: a region of the partition.
 struct Member {
   Part part;  ///< its surface, the whole of it whatever lies over it
+  /// Where others take a share of the body or the domain cuts it: all that bounds what is left, from
+  /// inside it, and more that is out of reach from there.
+  std::optional<ReferenceSurface<3>> bounds;
+  /// What the thickness of its walls is measured on.
+  const ReferenceSurface<3>& walls() const { return bounds ? *bounds : part.surface; }
   NaturalParams natural;
   std::unique_ptr<const NaturalDetector> detector;
   SizingField sizing;
@@ -23,20 +28,27 @@ struct Member {
   CorrectionField of_flow;
   std::unique_ptr<const FaceGroups> groups;  ///< null: the study has none on it
   double interface_size = 0;                 ///< mm, across its borders
-  /// A formula that ends with the domain only: the mesh finds its edges.
-  bool endless = false;
+  bool endless = false;  ///< a formula that ends with the domain only
 };
 
 /// What one mesh of all bodies is made from, before the first iteration.
 struct Assembly {
   std::vector<Member> members;  ///< [region], what is around the bodies last
   std::unique_ptr<const Partition<3>> partition;
+  bool full = false;  ///< the bodies leave nothing of the domain to what is around them
+  ZonePtr<3> domain;
   std::vector<std::int32_t> body_of;        ///< [region] body of an exact mesh, -1: dropped
   std::optional<ReferenceSurface<3>> wall;  ///< of the domain; unset: that of the mesh, planes
   SimplexMesh<3> first;                     ///< of the whole domain, one body
   double chord_tolerance = 0;               ///< mm, of the mesh to the bodies' exact shape
   double mesh_tolerance = 0;                ///< what the tessellations have left of it for the mesh
   std::vector<BodyOutcome> outcomes;        ///< [region], with overlaps and gaps in the notes
+
+  /// At most the distance of x to what the region is in the mesh, mm; 0 or less within.
+  double beyond(int region, const Vec<3>& x) const;
+  /// What holds the borders of the member in the mesh: its surface, of an endless one the part of it
+  /// that is within the domain.
+  ReferenceSurface<3> borders_of(const Member& member) const;
 };
 
 /// Facets on the CAD faces from number `first_face` on, which are those of a grouped surface, get

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/geometry/triangles.h"
 #include "core/study/request.h"
 
 namespace lamella {
@@ -16,14 +17,35 @@ Box<3> box_around(const Part& part) {
 
 }  // namespace
 
-void append_reversed(const ReferenceSurface<3>& surface, ReferenceSurface<3>& all) {
+void append(const ReferenceSurface<3>& surface, ReferenceSurface<3>& all) {
   const auto shift = static_cast<std::int32_t>(all.points.size());
   const auto faces = static_cast<std::int32_t>(all.faces.size());
   all.points.insert(all.points.end(), surface.points.begin(), surface.points.end());
   for (const auto& f : surface.facets)
-    all.facets.push_back({f[0] + shift, f[2] + shift, f[1] + shift});
+    all.facets.push_back({f[0] + shift, f[1] + shift, f[2] + shift});
   for (const std::int32_t face : surface.facet_face) all.facet_face.push_back(face + faces);
   all.faces.insert(all.faces.end(), surface.faces.begin(), surface.faces.end());
+}
+
+void append_reversed(const ReferenceSurface<3>& surface, const Zone<3>& taken_from,
+                     ReferenceSurface<3>& all) {
+  constexpr double kSame = 1e-7, kAlike = 0.99;  // of the facet's size; a cosine
+  ReferenceSurface<3> seen = surface;
+  seen.facets.clear();
+  seen.facet_face.clear();
+  for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+    const auto& v = surface.facets[f];
+    const std::array<Vec<3>, 3> p{surface.points[v[0]], surface.points[v[1]], surface.points[v[2]]};
+    const Vec<3> normal = facet_normal<3>(p);
+    const ZoneDistance<3> border = taken_from.at((p[0] + p[1] + p[2]) / 3);
+    const double size = (p[1] - p[0]).norm() + (p[2] - p[0]).norm();
+    if (std::abs(border.distance) <= kSame * size &&
+        border.normal.dot(normal) > kAlike * normal.norm())
+      continue;
+    seen.facets.push_back({v[0], v[2], v[1]});
+    if (!surface.facet_face.empty()) seen.facet_face.push_back(surface.facet_face[f]);
+  }
+  append(seen, all);
 }
 
 bool has_background(const Study& study) {

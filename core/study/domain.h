@@ -8,8 +8,12 @@
 
 namespace lamella {
 
-/// Adds the surface seen from its other side behind what is in `all`.
-void append_reversed(const ReferenceSurface<3>& surface, ReferenceSurface<3>& all);
+/// Adds the surface behind what is in `all`.
+void append(const ReferenceSurface<3>& surface, ReferenceSurface<3>& all);
+/// Adds the surface seen from its other side behind what is in `all`, but for facets that lie on
+/// the boundary of `taken_from` and look the same way: there is nothing behind them.
+void append_reversed(const ReferenceSurface<3>& surface, const Zone<3>& taken_from,
+                     ReferenceSurface<3>& all);
 
 /// Whether one mesh of all bodies has something around them that is no body itself.
 bool has_background(const Study& study);
