@@ -79,7 +79,9 @@ std::optional<Curved> chords_of(const Zone<3>& zone, const Vec<3>& foot, const V
 
 Metric<3> Curved::at(const Metric<3>& metric, double distance, double growth) const {
   const double none = 1e3 / std::sqrt(spectrum<3>(metric).values[0]);
-  Metric<3> chords = eigenvalue_from_size(none) * normal * normal.transpose();
+  // Across the border no farther than where the size along it is 2.5 times as large.
+  const double across = std::min(none, 1.5 * size[0] / growth + distance);
+  Metric<3> chords = eigenvalue_from_size(across) * normal * normal.transpose();
   bool asks = false;
   for (int k = 0; k < 2; ++k) {
     const double along = std::min(none, size[k] + growth * distance);

@@ -243,25 +243,29 @@ Result<MetricField<D>> interface_metric(const SimplexMesh<D>& mesh, const Fillin
 
 template <int D>
 MetricFunction<D> interface_metric_at(const Partition<D>& partition, MetricFunction<D> natural,
-                                      std::vector<double> h_min, double slope) {
-  const double finest = *std::min_element(h_min.begin(), h_min.end());
-  return [&partition, natural = std::move(natural), h_min = std::move(h_min), finest,
+                                      std::vector<std::optional<double>> h_min, double share,
+                                      double slope) {
+  return [&partition, natural = std::move(natural), h_min = std::move(h_min), share,
           slope](const Vec<D>& x) -> Metric<D> {
     const Metric<D> inside = natural(x);
     const double densest = spectrum<D>(inside).values[D - 1];
+    const double layer = size_from_eigenvalue(densest);
+    const auto across = [&](int region) { return h_min[region].value_or(share * layer); };
     // Beyond this the border asks for three times the size that there is.
-    const double reach = 2 * finest + 3 * size_from_eigenvalue(densest) / slope;
+    double finest = share * layer;
+    for (const std::optional<double>& h : h_min) finest = std::min(finest, h.value_or(finest));
+    const double reach = 2 * finest + 3 * layer / slope;
     thread_local std::vector<Border<D>> near;
     partition.borders(x, reach, near);
     if (near.empty()) return inside;
-    const double own = h_min[partition.region_of(x)];
+    const double own = across(partition.region_of(x));
     double strongest = densest;
     Metric<D> metric = inside;
     for (const auto& [zone, border] : near) {
       // A step across the border tells whose it is.
       const Vec<D> foot = x + border.distance * border.normal;
       const Vec<D> beyond = foot + 0.1 * finest * border.normal;
-      const double least = std::min(own, h_min[partition.region_of(beyond)]);
+      const double least = std::min(own, across(partition.region_of(beyond)));
       const double h = least + slope * std::max(0.0, border.distance - 2 * least);
       strongest = std::max(strongest, eigenvalue_from_size(h));
       intersect_with<D>(border.normal / h, metric);
@@ -277,8 +281,8 @@ MetricFunction<D> interface_metric_at(const Partition<D>& partition, MetricFunct
   template Result<MetricField<D>> interface_metric<D>(const SimplexMesh<D>&, const Filling&,    \
                                                       const MetricField<D>&,                    \
                                                       const InterfaceParams&, const Progress&); \
-  template MetricFunction<D> interface_metric_at<D>(const Partition<D>&, MetricFunction<D>,     \
-                                                    std::vector<double>, double);
+  template MetricFunction<D> interface_metric_at<D>(                                            \
+      const Partition<D>&, MetricFunction<D>, std::vector<std::optional<double>>, double, double);
 LAMELLA_INSTANTIATE(2)
 LAMELLA_INSTANTIATE(3)
 #undef LAMELLA_INSTANTIATE

@@ -56,10 +56,12 @@ Result<MetricField<D>> interface_metric(const SimplexMesh<D>& mesh, const Fillin
 
 /// The same by distance, at any point: at the distance d from the nearest border with the normal n
 ///   M = M_natural + n n^T / h(d)^2,  h(d) = h_min + slope max(0, d - 2 h_min).
-/// `natural` is asked where the result is and must live as long. It takes h_min of the regions that
-/// the point and the border's other side belong to.
+/// `natural` is asked where the result is and must live as long. It takes the smaller h_min of the
+/// regions that the point and the border's other side belong to; that of a region without one is
+/// `share` of the smallest natural size at the point.
 template <int D>
 MetricFunction<D> interface_metric_at(const Partition<D>& partition, MetricFunction<D> natural,
-                                      std::vector<double> h_min, double slope = 0.5);
+                                      std::vector<std::optional<double>> h_min, double share = 0.25,
+                                      double slope = 0.5);
 
 }  // namespace lamella

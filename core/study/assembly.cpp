@@ -343,9 +343,11 @@ class AssemblyLoop {
   }
 
   MetricFunction<3> captured_at() const {
+    std::vector<std::optional<double>> asked;
+    for (const Member& member : of_.members) asked.push_back(member.interface_asked);
     return interface_metric_at<3>(
-        *of_.partition, [this](const Vec<3>& x) { return natural_at(x); }, interface_sizes(),
-        kSlope);
+        *of_.partition, [this](const Vec<3>& x) { return natural_at(x); }, std::move(asked),
+        of_.border_share, kSlope);
   }
 
   /// Takes the mesh as the next state, with filling, metric, layers and record.

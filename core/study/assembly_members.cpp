@@ -45,6 +45,7 @@ class Layout {
     Result<StudyZone> hull = domain_hull(study_, parts_);
     if (!hull) return hull.error();
     hull_ = std::move(*hull);
+    assembly_.border_share = options_.interfaces == Interfaces::exact ? kOfLayerCut : kOfLayer;
     const Part* domain = part_called(background_);
     const Box<3> box = domain ? box_of(domain->surface) : make_zone(hull_, {hull_})->box();
     assembly_.chord_tolerance = options_.chord_tolerance.value_or(1e-3 * (box.hi - box.lo).norm());
@@ -225,8 +226,9 @@ class Layout {
     Result<SizingField> sizing = SizingField::make(sizing_of(study_, member.part.name), surface);
     if (!sizing) return sizing.error();
     member.sizing = std::move(*sizing);
-    const double of_layer = options_.interfaces == Interfaces::exact ? kOfLayerCut : kOfLayer;
-    member.interface_size = settings.interface_size.value_or(of_layer * thinnest_layer(member));
+    member.interface_asked = settings.interface_size;
+    member.interface_size =
+        settings.interface_size.value_or(assembly_.border_share * thinnest_layer(member));
     BodyOutcome outcome;
     outcome.name = member.part.name;
     outcome.layers_asked = member.natural.layers;

@@ -16,8 +16,8 @@ namespace lamella {
 /// A body or what is around all of them: a region of the partition.
 struct Member {
   Part part;  ///< its surface, the whole of it whatever lies over it
-  /// Where others take a share of the body or the domain cuts it: all that bounds what is left, from
-  /// inside it, and more that is out of reach from there.
+  /// Where others take a share of the body or the domain cuts it: all that bounds what is left,
+  /// from inside it, and more that is out of reach from there.
   std::optional<ReferenceSurface<3>> bounds;
   /// What the thickness of its walls is measured on.
   const ReferenceSurface<3>& walls() const { return bounds ? *bounds : part.surface; }
@@ -27,8 +27,9 @@ struct Member {
   LayerCorrection correction;
   CorrectionField of_flow;
   std::unique_ptr<const FaceGroups> groups;  ///< null: the study has none on it
-  double interface_size = 0;                 ///< mm, across its borders
-  bool endless = false;  ///< a formula that ends with the domain only
+  double interface_size = 0;              ///< mm, across its borders, where its layers are thinnest
+  std::optional<double> interface_asked;  ///< the same for all of them; unset: a share of the layer
+  bool endless = false;                   ///< a formula that ends with the domain only
 };
 
 /// What one mesh of all bodies is made from, before the first iteration.
@@ -41,13 +42,14 @@ struct Assembly {
   std::optional<ReferenceSurface<3>> wall;  ///< of the domain; unset: that of the mesh, planes
   SimplexMesh<3> first;                     ///< of the whole domain, one body
   double chord_tolerance = 0;               ///< mm, of the mesh to the bodies' exact shape
+  double border_share = 0;                  ///< of the layer there: the size across borders
   double mesh_tolerance = 0;                ///< what the tessellations have left of it for the mesh
   std::vector<BodyOutcome> outcomes;        ///< [region], with overlaps and gaps in the notes
 
   /// At most the distance of x to what the region is in the mesh, mm; 0 or less within.
   double beyond(int region, const Vec<3>& x) const;
-  /// What holds the borders of the member in the mesh: its surface, of an endless one the part of it
-  /// that is within the domain.
+  /// What holds the borders of the member in the mesh: its surface, of an endless one the part of
+  /// it that is within the domain.
   ReferenceSurface<3> borders_of(const Member& member) const;
 };
 

@@ -136,7 +136,7 @@ TEST(InterfaceMetric, SizesComeDownByHalvesFromRoundToRound) {
 TEST(InterfaceMetric, DistanceFormGrowsFromThePlane) {
   const Partition<3> partition({{"low", half_space_zone<3>(Vec<3>(0, 0, 1), 0.5)}});
   const auto metric = interface_metric_at<3>(
-      partition, [](const Vec<3>&) { return isotropic_metric<3>(0.2); }, {0.01, 0.02}, 0.5);
+      partition, [](const Vec<3>&) { return isotropic_metric<3>(0.2); }, {{0.01, 0.02}}, 0.25, 0.5);
   for (const double d : {0.0, 0.01, 0.05, 0.1, 0.3}) {
     const double asked = std::min(0.2, 0.01 + 0.5 * std::max(0.0, d - 0.02));
     for (const double side : {-1.0, 1.0}) {
@@ -148,10 +148,24 @@ TEST(InterfaceMetric, DistanceFormGrowsFromThePlane) {
   }
 }
 
+TEST(InterfaceMetric, WithoutASizeOfItsOwnABorderTakesAShareOfTheLayer) {
+  const Partition<3> partition({{"low", half_space_zone<3>(Vec<3>(0, 0, 1), 0.5)}});
+  // Layers that grow along the border.
+  const auto layer = [](const Vec<3>& x) { return 0.1 + 0.2 * x[0]; };
+  const auto metric = interface_metric_at<3>(
+      partition, [&](const Vec<3>& x) { return isotropic_metric<3>(layer(x)); },
+      {std::nullopt, std::nullopt}, 0.25, 0.5);
+  for (const double along : {0.0, 0.5, 1.0}) {
+    const Vec<3> x(along, 0.4, 0.5);
+    EXPECT_NEAR(size_from_eigenvalue(metric(x)(2, 2)), 0.25 * layer(x), 1e-9);
+  }
+}
+
 TEST(InterfaceMetric, DistanceFormIsFineInTwoDirectionsWhereThreeRegionsMeet) {
   const Partition<3> partition = two_balls();
   const auto metric = interface_metric_at<3>(
-      partition, [](const Vec<3>&) { return isotropic_metric<3>(0.2); }, {0.01, 0.01, 0.01}, 1);
+      partition, [](const Vec<3>&) { return isotropic_metric<3>(0.2); }, {{0.01, 0.01, 0.01}}, 0.25,
+      1);
   // The circle where both spheres cross: |x - a| = .22, |x - b| = .2.
   const double along = (0.22 * 0.22 - 0.2 * 0.2 + 0.22 * 0.22) / (2 * 0.22);
   const double radius = std::sqrt(0.22 * 0.22 - along * along);
