@@ -61,6 +61,7 @@ Scene pierced_plate() {
   scene.parts.push_back(part_of("plate", testing::cell_surface({x, y, z}, [](int i, int j, int) {
                                   return j != 1 || (i != 1 && i != 3);
                                 })));
+  scene.parts.back().cad_volume = enclosed_measure(scene.parts.back().surface);
   scene.study.domain = StudyDomain{DomainMargin{0.15}};
   return scene;
 }

@@ -36,6 +36,26 @@ TEST(Partition, AFirstRegionThatContainsAPointOwnsIt) {
   EXPECT_EQ(p.region_of({0, -1.5, 1.5}), 4);
 }
 
+TEST(Partition, APointBetweenCellsBelongsToOneOfThem) {
+  std::mt19937_64 random(9);
+  std::vector<Vec<3>> seeds;
+  for (int s = 0; s < 6; ++s) seeds.push_back(random_point(random, 3));
+  std::vector<Region<3>> cells;
+  for (std::size_t s = 0; s < seeds.size(); ++s)
+    cells.push_back({"cell", voronoi_zone<3>(seeds, s)});
+  const Partition<3> p(cells);
+  int border = 0;
+  for (int i = 0; i < 3000; ++i) {
+    // Onto the plane between two seeds, as well as it can be computed.
+    const Vec<3> between = seeds[i % 6] - seeds[(i + 1 + i % 5) % 6];
+    const Vec<3> n = between.normalized(), x = random_point(random, 3);
+    const Vec<3> on = x - n.dot(x - seeds[i % 6] + 0.5 * between) * n;
+    EXPECT_NE(p.region_of(on), p.background());
+    border += p.border(on).distance < 1e-12;
+  }
+  EXPECT_GT(border, 100);
+}
+
 TEST(Partition, ItsDistancesAreNegativeInOneRegionOnlyAndThatIsTheOwner) {
   const Partition<3> p = crowded();
   std::mt19937_64 random(3);

@@ -75,6 +75,9 @@ TEST(BoundaryDistance, FindsTheFarthestPointBetweenVerticesAndWithinTheResolutio
   const auto flat = sheet({0, 0.5, 1}, [](double) { return 0.0; });
   const auto roof = sheet({0, 0.3, 1}, tent);
   EXPECT_NEAR(farthest_point(roof, flat)->distance, 0.1, 1e-12);
+  // Without what lies under something as far as x = 0.5.
+  const Covered covered = [](const Vec<3>& x) { return 0.5 - x[0]; };
+  EXPECT_NEAR(farthest_point(roof, flat, 1e-7, 1, {}, covered)->distance, tent(0.5), 2e-7);
   // From the plane the nearest point of the roof is beside the ridge: the perpendicular of the
   // flatter side, which the steeper one reaches as well at the place sought.
   double expected = 0;

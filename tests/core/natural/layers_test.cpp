@@ -138,6 +138,12 @@ TEST(Layers, WithinALargerMeshTheyAreCountedFromWallToWall) {
     EXPECT_TRUE(!far || std::isnan(layers->at_node[i]));
   }
   EXPECT_FALSE(measure_layers_within(mesh, plate, 5)->below.empty());
+  // Of a body that something else takes the right half of, the left is measured.
+  const auto left =
+      measure_layers_within(mesh, plate, 4, 0, {}, [](const Vec<3>& x) { return x[0] < 1; });
+  EXPECT_NEAR(left->stats.mean, 4, 1e-5);
+  const auto all = static_cast<double>(layers->stats.places);
+  EXPECT_NEAR(static_cast<double>(left->stats.places), all / 2, 0.15 * all);
   // What sticks out of the mesh is not measured.
   EXPECT_EQ(measure_layers_within(
                 mesh, moved<3>(box_surface({1, 1, 0.4}), Mat<3>::Identity(), {9, 9, 0.2}), 4)

@@ -124,6 +124,81 @@ TEST(Assembly, AnInsertKeepsWhatItSharesWithAMold) {
   EXPECT_LT(outcome->bodies[1].cad_volume, 4 * std::numbers::pi / 3 * 0.125);
 }
 
+TEST(Assembly, WallsAreThoseThatAnInsertLeaves) {
+  // 3 mm of plastic, 1 mm of it over the insert.
+  Study study;
+  study.zones = {{"plastic", ZoneBox{{0, 0, 0}, {12, 12, 3}}},
+                 {"insert", ZoneBox{{2, 2, -1}, {10, 10, 2}}}};
+  study.bodies = {{"plastic", 2}, {"insert", 2}};
+  study.bodies[0].role = BodyRole::cavity;
+  study.bodies[1].role = BodyRole::insert;
+  study.domain = StudyDomain{ZoneBox{{-3, -3, -3}, {15, 15, 6}}};
+  study.options.iterations = 4;
+  const Result<Outcome> outcome = mesh(study);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  const MeshState& state = *outcome->state;
+  int above = 0;
+  for (NodeId n = 1; n < static_cast<NodeId>(state.mesh.points.size()); ++n) {
+    const Vec<3>& x = state.mesh.points[n];
+    if ((x - Vec<3>(6, 6, 2.5)).cwiseAbs().maxCoeff() > 2.5 || x[2] < 2.01 || x[2] > 2.99) continue;
+    EXPECT_NEAR(state.thickness[n], 1, 0.02) << x.transpose();
+    ++above;
+  }
+  EXPECT_GT(above, 3);
+  for (const BodyOutcome& body : outcome->bodies) {
+    EXPECT_LE(body.boundary_distance.largest(), body.chord_tolerance) << body.name;
+    EXPECT_NEAR(body.mesh_volume / body.cad_volume, 1, 1e-4) << body.name;
+    EXPECT_GE(body.layers.mean, body.name == "plastic" ? 2 : 0) << body.name;
+  }
+}
+
+TEST(Assembly, ABorderThatReachesTheWallAsksForNoSmallerSizesThere) {
+  const Result<Outcome> outcome = mesh(halves(Interfaces::exact));
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  // Both halves are 0.7 to 1.3 mm thick and get two layers.
+  for (std::size_t n = 1; n < outcome->state->metric.size(); ++n)
+    EXPECT_GT(sizes<3>(outcome->state->metric[n])[0], 0.1)
+        << outcome->state->mesh.points[n].transpose();
+}
+
+TEST(Assembly, CellsLeaveNothingBetweenThem) {
+  Study study;
+  const std::vector<Vec<3>> seeds{{1, 1, 1}, {3, 1.5, 1}, {1.5, 3, 1.2}, {2.8, 2.9, 2.8}};
+  for (std::size_t s = 0; s < seeds.size(); ++s) {
+    study.zones.push_back({"grain " + std::to_string(s + 1), ZoneCell{seeds[s], "grains"}});
+    study.bodies.push_back({study.zones.back().name, 2});
+  }
+  study.domain = StudyDomain{ZoneBox{{0, 0, 0}, {4, 4, 4}}};
+  study.options.iterations = 3;
+  for (const Interfaces interfaces : {Interfaces::fuzzy, Interfaces::exact}) {
+    study.options.interfaces = interfaces;
+    const Result<Outcome> outcome = mesh(study);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    const SimplexMesh<3>& made = outcome->state->mesh;
+    EXPECT_EQ(made.bodies.size(), seeds.size());
+    ASSERT_EQ(outcome->bodies.size(), seeds.size());
+    double volume = 0;
+    for (const BodyOutcome& grain : outcome->bodies) {
+      volume += grain.mesh_volume;
+      EXPECT_NEAR(grain.mesh_volume / grain.cad_volume, 1, 0.01) << grain.name;
+    }
+    EXPECT_NEAR(volume, 64, 1e-6);
+    if (interfaces == Interfaces::fuzzy) continue;
+    // Each element is where its grain is, but for the tolerance.
+    const double off = outcome->bodies[0].chord_tolerance;
+    for (std::size_t e = 0; e < made.elements.size(); ++e) {
+      const auto p = made.corners(made.elements[e]);
+      const Vec<3> center = (p[0] + p[1] + p[2] + p[3]) / 4;
+      const Vec<3>& own = seeds[made.element_body[e]];
+      for (const Vec<3>& seed : seeds) {
+        if (seed == own) continue;
+        const double beyond = (center - own).squaredNorm() - (center - seed).squaredNorm();
+        EXPECT_LE(beyond / (2 * (seed - own).norm()), off);
+      }
+    }
+  }
+}
+
 TEST(Assembly, RefusesWhatCannotBe) {
   Study study = halves(Interfaces::exact);
   study.domain = StudyDomain{DomainBody{"nobody"}};
