@@ -9,6 +9,7 @@
 
 #include "core/base/parallel.h"
 #include "core/metric/intersect.h"
+#include "core/multidomain/feature_chains.h"
 
 namespace lamella {
 namespace {
@@ -19,6 +20,9 @@ constexpr double edge_share = 0.5;
 constexpr double parabola = 0.08;
 /// Cosine between normals a step apart below which there is an edge between.
 constexpr double sharp_turn = 0.85;
+/// Of the whole: details are smaller. Of the tolerance: straight pieces of their edges.
+constexpr double detail_share = 0.05;
+constexpr double detail_chord = 0.2;
 /// Of the whole: what is flatter than this counts as flat.
 constexpr double flat_share = 0.3;
 
@@ -114,6 +118,87 @@ Metric<3> with_chords(const Metric<3>& metric, const Partition<3>& partition, co
   return curved ? curved->at(metric, std::abs(near.distance), growth) : metric;
 }
 
+void ChordField::Level::add(const std::array<Vec<3>, 3>& facet, const Curved& asked) {
+  const auto first = static_cast<std::int32_t>(surface.points.size());
+  surface.points.insert(surface.points.end(), facet.begin(), facet.end());
+  surface.facets.push_back({first, first + 1, first + 2});
+  surface.facet_face.push_back(0);
+  curved.push_back(asked);
+}
+
+void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
+                             double tolerance, double largest, int threads, Levels& levels) {
+  // Pieces of the chains, as slim facets that a locator can hold.
+  struct Piece {
+    std::array<Vec<3>, 3> facet;
+    std::size_t chain;
+  };
+  const auto chains = feature_chains(surface, detail_chord * tolerance);
+  std::vector<Piece> pieces;
+  std::vector<double> length(chains.size());
+  std::vector<std::array<Vec<3>, 2>> ends(chains.size());
+  ReferenceSurface<3> slim;
+  slim.faces.resize(1);
+  for (std::size_t c = 0; c < chains.size(); ++c) {
+    ends[c] = {chains[c].front(), chains[c].back()};
+    for (std::size_t k = 0; k + 1 < chains[c].size(); ++k) {
+      const Vec<3>&a = chains[c][k], &b = chains[c][k + 1];
+      length[c] += (b - a).norm();
+      const int cuts = std::clamp(static_cast<int>((b - a).norm() / largest), 1, 64);
+      for (int i = 0; i < cuts; ++i) {
+        const Vec<3> p = a + (b - a) * i / cuts, q = a + (b - a) * (i + 1) / cuts;
+        const Vec<3> aside = 1e-3 * (q - p).norm() * (q - p).unitOrthogonal();
+        pieces.push_back({{p, q, 0.5 * (p + q) + aside}, c});
+        const auto first = static_cast<std::int32_t>(slim.points.size());
+        slim.points.insert(slim.points.end(), {p, q, 0.5 * (p + q) + aside});
+        slim.facets.push_back({first, first + 1, first + 2});
+        slim.facet_face.push_back(0);
+      }
+    }
+    // Around, three edges are the least.
+    if ((ends[c][0] - ends[c][1]).norm() <= 1e-9 * length[c]) length[c] /= 3;
+  }
+  if (pieces.empty()) return;
+  const Locator<3> locator(slim);
+  const auto meet = [&](std::size_t c, std::size_t d) {
+    if (c == d) return true;
+    for (const Vec<3>& p : ends[c])
+      for (const Vec<3>& q : ends[d])
+        if ((p - q).norm() <= tolerance) return true;
+    return false;
+  };
+  std::vector<std::optional<Curved>> found(pieces.size());
+  parallel_each(pieces.size(), threads, {}, [&](std::size_t i) {
+    const auto& [facet, chain] = pieces[i];
+    const Vec<3> middle = 0.5 * (facet[0] + facet[1]);
+    if (partition.border(middle).distance > 0.1 * tolerance) return;  // hidden
+    std::vector<Nearest<3>> near;
+    locator.all_within(middle, largest, near);
+    Curved asked;
+    asked.direction[0] = (facet[1] - facet[0]).normalized();
+    asked.direction[1] = asked.direction[0].unitOrthogonal();
+    asked.size = {length[chain], std::numeric_limits<double>::infinity()};
+    for (const Nearest<3>& n : near) {
+      if (meet(chain, pieces[static_cast<std::size_t>(n.facet)].chain)) continue;
+      Vec<3> across = n.point - middle;
+      across -= across.dot(asked.direction[0]) * asked.direction[0];
+      const double width = across.norm();
+      if (!(width > tolerance) || width >= asked.size[1]) continue;
+      asked.size[1] = width;
+      asked.direction[1] = across / width;
+    }
+    asked.normal = asked.direction[0].cross(asked.direction[1]);
+    if (asked.size[1] < asked.size[0]) {
+      std::swap(asked.size[0], asked.size[1]);
+      std::swap(asked.direction[0], asked.direction[1]);
+    }
+    asked.size[0] = std::max(asked.size[0], tolerance);
+    if (asked.size[0] < largest) found[i] = asked;
+  });
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    if (found[i]) levels[std::ilogb(found[i]->size[0])].add(pieces[i].facet, *found[i]);
+}
+
 ChordField::ChordField(const Partition<3>& partition,
                        const std::vector<ReferenceSurface<3>>& surfaces, double tolerance,
                        double growth, int threads)
@@ -122,7 +207,7 @@ ChordField::ChordField(const Partition<3>& partition,
   for (const auto& s : surfaces)
     for (const Vec<3>& p : s.points) all.add(p);
   const double largest = (all.hi - all.lo).norm();
-  std::map<int, Level> levels;  // by the power of two of the smallest size
+  Levels levels;
   for (std::size_t z = 0; z < surfaces.size(); ++z) {
     const ReferenceSurface<3>& s = surfaces[z];
     std::vector<std::optional<Curved>> found(s.facets.size());
@@ -137,13 +222,11 @@ ChordField::ChordField(const Partition<3>& partition,
     });
     for (std::size_t f = 0; f < found.size(); ++f) {
       if (!found[f] || !(found[f]->size[0] < flat_share * largest)) continue;
-      Level& level = levels[std::ilogb(found[f]->size[0])];
-      const auto first = static_cast<std::int32_t>(level.surface.points.size());
-      for (auto v : s.facets[f]) level.surface.points.push_back(s.points[v]);
-      level.surface.facets.push_back({first, first + 1, first + 2});
-      level.surface.facet_face.push_back(0);
-      level.curved.push_back(*found[f]);
+      levels[std::ilogb(found[f]->size[0])].add(
+          {s.points[s.facets[f][0]], s.points[s.facets[f][1]], s.points[s.facets[f][2]]},
+          *found[f]);
     }
+    add_details(s, partition, tolerance, detail_share * largest, threads, levels);
   }
   for (auto& [power, level] : levels) {
     level.surface.faces.resize(1);

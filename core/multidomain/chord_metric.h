@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -17,7 +18,9 @@ Metric<3> with_chords(const Metric<3>& metric, const Partition<3>& partition, co
                       double tolerance, double growth = 0.5);
 
 /// The same for all that is curved in the surfaces of the zones, wherever the nearest border is: a
-/// fillet makes sizes small around it too. Immutable and thread-safe.
+/// fillet makes sizes small around it too. And for details, whose edges the mesh has to follow:
+/// along a feature edge from corner to corner sizes are at most its length, and between edges that
+/// have no corner in common at most their distance. Immutable and thread-safe.
 class ChordField {
  public:
   ChordField(const Partition<3>& partition, const std::vector<ReferenceSurface<3>>& surfaces,
@@ -38,7 +41,14 @@ class ChordField {
     ReferenceSurface<3> surface;
     std::vector<Curved> curved;  ///< [facet]
     std::unique_ptr<const Locator<3>> locator;
+
+    void add(const std::array<Vec<3>, 3>& facet, const Curved& asked);
   };
+  /// By the power of two of the smallest size.
+  using Levels = std::map<int, Level>;
+  static void add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
+                          double tolerance, double largest, int threads, Levels& levels);
+
   std::vector<Level> levels_;
   double growth_;
 };

@@ -258,9 +258,10 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   cut_params.snap = params.snap;
   cut_params.threads = adapt_params.threads;
   const double tolerance = cut_params.tolerance;
-  const ChordField field(partition, surfaces, tolerance, chord_growth, adapt_params.threads);
+  const auto field = std::make_shared<const ChordField>(partition, surfaces, tolerance,
+                                                        chord_growth, adapt_params.threads);
   const auto add_chords = [&](const Metric<3>& m, const Vec<3>& x) {
-    return field.at(with_chords(m, partition, x, tolerance), x);
+    return field->at(with_chords(m, partition, x, tolerance), x);
   };
   MetricFunction<3> chords_at;
   if (metric_at) chords_at = [&](const Vec<3>& x) { return add_chords(metric_at(x), x); };
@@ -294,6 +295,7 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
                                        progress.portion(0.4, 0.5), chords_at);
   if (!cut) return cut.error();
   Exact out;
+  out.chords = field;
   out.snapped = cut->snapped;
   out.added = cut->added;
   out.lost = cut->lost;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/multidomain/chord_metric.h"
 #include "core/multidomain/partition.h"
 #include "core/optimize/adapt.h"
 
@@ -28,6 +29,8 @@ struct Exact {
   std::size_t snapped = 0;               ///< nodes moved onto borders
   std::size_t added = 0;                 ///< nodes added on borders
   std::size_t lost = 0;                  ///< pieces of feature edges that could not be followed
+  /// What the borders' curves and details ask for, at the chord tolerance.
+  std::shared_ptr<const ChordField> chords;
   AdaptReport adapt;
 };
 

@@ -217,7 +217,9 @@ class AssemblyLoop {
 
   /// What is asked where the faces of the mesh are the borders: edges along them are chords.
   Metric<3> exact_at(const Vec<3>& x) const {
-    return with_chords(natural_at(x), *of_.partition, x, kChordShare * of_.mesh_tolerance, kGrowth);
+    const Metric<3> asked =
+        with_chords(natural_at(x), *of_.partition, x, kChordShare * of_.mesh_tolerance, kGrowth);
+    return chords_ ? chords_->at(asked, x) : asked;
   }
   MetricFunction<3> natural_alone() const {
     return [this](const Vec<3>& x) -> Metric<3> { return exact_at(x) * kAskedScale; };
@@ -269,6 +271,7 @@ class AssemblyLoop {
     if (made->lost > 0)
       of_.outcomes.front().notes.push_back(std::to_string(made->lost) +
                                            " pieces of sharp edges could not be followed.");
+    chords_ = std::move(made->chords);
     exact_ = std::make_unique<const ReferenceSurface<3>>(std::move(made->surface));
     Result<void> accepted = accept(std::move(mesh), start, progress.portion(0.6, 1));
     if (!accepted) exact_.reset();  // the mesh that stays is the fuzzy one
@@ -524,6 +527,7 @@ class AssemblyLoop {
   Assembly of_;
   /// What holds the boundary and the interfaces, once the mesh was cut.
   std::unique_ptr<const ReferenceSurface<3>> exact_;
+  std::shared_ptr<const ChordField> chords_;  ///< since then
   MeshState current_;
   std::vector<IterationRecord> records_;
   bool settled_ = false, failed_ = false;

@@ -24,7 +24,9 @@ TEST(ChordMetric, ChordsOfABallKeepTheTolerance) {
     const Vec<3> t = n.unitOrthogonal(), b = n.cross(t);
     for (const Vec<3>& along : {t, b, Vec<3>((t + b).normalized())})
       EXPECT_NEAR(1 / metric_length<3>(along, m), chord(r), 0.02 * chord(r));
-    EXPECT_NEAR(1 / metric_length<3>(n, m), large, 1e-6);
+    // Across, no farther than where sizes along have grown to 2.5 times.
+    const double across = 1 / metric_length<3>(n, m);
+    EXPECT_NEAR(chord(r) + 0.5 * across, 2.5 * chord(r), 0.05 * chord(r));
   }
 }
 
@@ -75,7 +77,30 @@ TEST(ChordField, SizesGrowWithTheDistanceFromWhatIsCurved) {
   EXPECT_LT((with_chords(given, partition, x, tolerance) - given).norm(), 1e-9 * given.norm());
   const Metric<3> m = field.at(given, x);
   EXPECT_NEAR(1 / metric_length<3>(Vec<3>::UnitX(), m), expected, 0.05 * expected);
-  EXPECT_NEAR(1 / metric_length<3>(Vec<3>::UnitZ(), m), large, 0.02 * large);
+  EXPECT_LE(1 / metric_length<3>(Vec<3>::UnitZ(), m), large);
+}
+
+TEST(ChordField, SizesAreNoLargerThanDetails) {
+  // A groove, 0.02 wide and 0.03 deep, across the top of a block.
+  const double wide = 0.02, deep = 0.03, growth = 0.5;
+  ReferenceSurface<3> s =
+      testing::cell_surface({{{0, 0.5, 0.5 + wide, 1}, {0, 2}, {0, 1 - deep, 1}}},
+                            [](int i, int, int k) { return i != 1 || k == 0; });
+  find_features(s, 0.6);
+  const Partition<3> partition({{"block", surface_zone<3>(s)}});
+  const ChordField field(partition, {s}, tolerance, growth);
+  const Metric<3> given = isotropic_metric<3>(large);
+  const auto size = [&](const Vec<3>& x, int axis) {
+    return 1 / metric_length<3>(Vec<3>::Unit(axis), field.at(given, x));
+  };
+  for (const double y : {0.3, 1.0, 1.7}) {
+    EXPECT_LE(size({0.5, y, 1}, 0), 1.01 * wide);  // between its upper edges
+    EXPECT_LE(size({0.5, y, 1 - deep}, 2), 1.51 * wide / growth);
+    EXPECT_GT(size({0.5, y, 1}, 1), 10 * wide);  // along
+    EXPECT_NEAR(size({0.5, y, 1.1}, 0), wide + growth * 0.1, 0.01);
+  }
+  EXPECT_LE(size({0.5, 0, 1 - deep / 2}, 2), 1.01 * deep);  // its edge at the end of the block
+  EXPECT_LT((field.at(given, {0.5, 1, 0}) - given).norm(), 1e-9 * given.norm());
 }
 
 TEST(ChordField, FlatSidesAskForNothing) {
