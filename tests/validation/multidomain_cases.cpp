@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr int kFirst = 8, kLast = 12;  // iterations that are compared
 constexpr double kPoor = 0.2;          // quality
+constexpr int kRealLayers = 2;         // n of real parts
 
 struct Scene {
   std::string name;
@@ -108,6 +109,7 @@ Result<Scene> files(const std::string& name, const fs::path& folder,
     scene.parts.insert(scene.parts.end(), parts->begin(), parts->end());
   }
   number_names(scene.parts);
+  for (const Part& part : scene.parts) scene.study.bodies.push_back({part.name, kRealLayers});
   scene.study.domain = StudyDomain{DomainMargin{}};
   return scene;
 }
