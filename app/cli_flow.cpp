@@ -6,10 +6,12 @@
 #include "app/cli_text.h"
 #include "app/services.h"
 #include "core/flow/correction.h"
+#include "core/flow/field_transfer.h"
 #include "core/flow/indicators.h"
 #include "core/flow/stokes.h"
 #include "core/io/mesh_file.h"
 #include "core/io_vtk/vtu.h"
+#include "core/study/flow_entry.h"
 #include "core/study/measure.h"
 
 namespace lamella::cli {
@@ -18,28 +20,44 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kField = "field:";
-
-/// Mesh, metric (may be empty) and fields at the nodes of a file.
-struct Input {
-  AnyMesh mesh;
-  MetricField<3> metric;
-  std::vector<NodeField> fields;
+/// METHOD or METHOD:NAME of --correct.
+struct Asked {
+  std::string method, field;
 };
 
-Result<Input> read_input(const std::string& file, const Progress& progress) {
-  Input out;
-  if (fs::path(file).extension() == ".vtu") {
-    Result<MeshContent> content = read_vtu(file);
-    if (!content) return content.error();
-    if (Result<void> done = complete(*content, file); !done) return done.error();
-    out = {std::move(content->mesh), std::move(content->metric), std::move(content->of_nodes)};
-    return out;
+Asked asked_of(const std::string& correct) {
+  const std::size_t colon = correct.find(':');
+  if (colon == std::string::npos) return {correct, {}};
+  return {correct.substr(0, colon), correct.substr(colon + 1)};
+}
+
+/// A field of a solver's result at the nodes of `mesh`.
+Result<NodeField> external_field(const SimplexMesh<3>& mesh, const FlowCommand& c,
+                                 const Progress& progress, Console& console) {
+  const std::string file = c.field_file.empty() ? c.mesh : c.field_file;
+  const std::string name = asked_of(c.correct).field;
+  if (fs::path(file).extension() != ".vtu")
+    return Error{Code::usage, "\"" + file + "\" is no .vtu: it has no field to correct by.",
+                 "Give the solver's result with --field FILE.vtu."};
+  Result<SolverResult> found = read_vtu_result(file);
+  if (!found) return of_input(found.error());
+  std::string known;
+  for (NodeField& field : found->fields) {
+    known += (known.empty() ? "" : ", ") + field.name;
+    if (field.name != name) continue;
+    for (Vec<3>& p : found->mesh.points) p *= unit_factor(c.field_unit);
+    Result<TransferredField> there =
+        transfer_field(found->mesh, field.values, field.components, mesh, c.threads, progress);
+    if (!there) return there.error();
+    if (there->outside > 0)
+      console.say("note: " + grouped(there->outside) + " of " + grouped(mesh.node_count()) +
+                  " nodes lie outside the mesh of the field, up to " +
+                  short_number(there->farthest, 2) + " mm; the nearest place counts there");
+    field.values = std::move(there->values);
+    return std::move(field);
   }
-  Result<AnyMesh> mesh = read_any(file, &out.metric, progress);
-  if (!mesh) return mesh.error();
-  out.mesh = std::move(*mesh);
-  return out;
+  return Error{Code::usage, "\"" + file + "\" has no field \"" + name + "\".",
+               known.empty() ? "It has none at all." : "It has: " + known + "."};
 }
 
 template <int D>
@@ -121,29 +139,16 @@ void say_flow(const SimplexMesh<D>& mesh, const Flow<D>& flow, Console& console)
                      {"imbalance", flow.imbalance}}));
 }
 
-/// The tensors (5.6), (5.7) of a field of the file.
-template <int D>
-Result<std::vector<Mat<D>>> tensors_of_field(const SimplexMesh<D>& mesh,
-                                             const std::vector<NodeField>& fields,
-                                             const FlowCommand& c) {
-  const std::string name = c.correct.substr(kField.size());
-  std::string known;
-  for (const NodeField& field : fields) {
-    known += (known.empty() ? "" : ", ") + field.name;
-    if (field.name != name) continue;
-    if (field.components == 1) return gradient_tensors<D>(mesh, field.values, c.threads);
-    std::vector<Vec<D>> vectors(mesh.points.size());
-    for (std::size_t n = 0; n < vectors.size(); ++n)
-      for (int k = 0; k < D; ++k) vectors[n][k] = field.values[3 * n + static_cast<std::size_t>(k)];
-    return gradient_tensors<D>(mesh, vectors, c.threads);
-  }
-  return Error{Code::usage, "The mesh file has no field \"" + name + "\" at its nodes.",
-               known.empty() ? "Give a .vtu with the field." : "It has: " + known + "."};
+std::vector<Vec<3>> vectors_of(const NodeField& field) {
+  std::vector<Vec<3>> out(field.values.size() / 3);
+  for (std::size_t n = 0; n < out.size(); ++n)
+    out[n] = Eigen::Map<const Vec<3>>(&field.values[3 * n]);
+  return out;
 }
 
 template <int D>
 Result<Corrected<D>> corrected(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
-                               const Fields<D>& fields, const std::vector<NodeField>& of_file,
+                               const Fields<D>& fields, const NodeField& field,
                                const FlowCommand& c, const Progress& progress) {
   AddParams add;
   add.strength = c.strength;
@@ -161,17 +166,35 @@ Result<Corrected<D>> corrected(const SimplexMesh<D>& mesh, const MetricField<D>&
   const auto smoothed = [&](const std::vector<double>& indicator) {
     return uniformize<D>(mesh, metric, indicator, even, progress);
   };
-  if (c.correct == "acceleration")
+  const std::string method = asked_of(c.correct).method;
+  if (method == "residual") return smoothed(fields.residual);
+  if (method == "directional") return smoothed(fields.directional);
+  if constexpr (D == 3) {
+    if (method == "indicator") {
+      std::vector<double> mean(mesh.elements.size(), 0);
+      for (std::size_t e = 0; e < mean.size(); ++e)
+        for (const NodeId n : mesh.elements[e]) mean[e] += field.values[n] / (D + 1);
+      return smoothed(mean);
+    }
+    if (method == "field" && field.components == 1)
+      return added(gradient_tensors<D>(mesh, field.values, c.threads));
+    if (!field.name.empty()) {
+      const std::vector<Vec<D>> v = vectors_of(field);
+      if (method == "field") return added(gradient_tensors<D>(mesh, v, c.threads));
+      if (method == "strain") return added(strain_tensors<D>(mesh, v, c.threads));
+      if (method == "combined") return added(combined_tensors<D>(mesh, v, c.threads));
+      if (method == "direction") return smoothed(direction_change<D>(mesh, v, c.threads));
+      return added(gradient_tensors<D>(mesh, acceleration_norm<D>(mesh, v, c.threads), c.threads));
+    }
+  }
+  if (method == "acceleration")
     return added(gradient_tensors<D>(mesh, fields.acceleration, c.threads));
-  if (c.correct == "velocity")
+  if (method == "velocity")
     return added(gradient_tensors<D>(mesh, fields.flow.velocity, c.threads));
-  if (c.correct == "strain") return added(strain_tensors<D>(mesh, fields.flow.velocity, c.threads));
-  if (c.correct == "direction") return smoothed(fields.turning);
-  if (c.correct == "residual") return smoothed(fields.residual);
-  if (c.correct == "directional") return smoothed(fields.directional);
-  const auto tensors = tensors_of_field<D>(mesh, of_file, c);
-  if (!tensors) return tensors.error();
-  return added(*tensors);
+  if (method == "strain") return added(strain_tensors<D>(mesh, fields.flow.velocity, c.threads));
+  if (method == "combined")
+    return added(combined_tensors<D>(mesh, fields.flow.velocity, c.threads));
+  return smoothed(fields.turning);
 }
 
 /// A planar mesh as triangles in space; in 3D the mesh itself.
@@ -234,8 +257,8 @@ Result<SimplexMesh<D>> body_of(const SimplexMesh<D>& mesh, const std::string& na
 }
 
 template <int D>
-int solve_and_correct(const SimplexMesh<D>& whole, MetricField<D> metric,
-                      std::vector<NodeField> of_file, const FlowCommand& c, Console& console) {
+int solve_and_correct(const SimplexMesh<D>& whole, MetricField<D> metric, const FlowCommand& c,
+                      Console& console) {
   const Progress progress = console.progress();
   std::vector<NodeId> old_id;
   SimplexMesh<D> part;
@@ -245,22 +268,30 @@ int solve_and_correct(const SimplexMesh<D>& whole, MetricField<D> metric,
     part = std::move(*found);
   }
   const SimplexMesh<D>& mesh = c.body.empty() ? whole : part;
-  for (NodeField& field : of_file) {
-    if (old_id.empty()) continue;
-    const auto k = static_cast<std::size_t>(field.components);
-    std::vector<double> kept;
-    for (const NodeId n : old_id)
-      for (std::size_t i = 0; i < k; ++i) kept.push_back(field.values[k * n + i]);
-    field.values = std::move(kept);
-  }
 
-  const bool solving = !c.correct.starts_with(kField) || !c.gates.empty() || !c.rates.empty();
+  const Asked asked = asked_of(c.correct);
   Fields<D> fields;
-  if (solving) {
-    auto found = fields_of<D>(mesh, c, progress.portion(0, 0.8));
+  if (asked.field.empty() || !c.gates.empty() || !c.rates.empty()) {
+    auto found = fields_of<D>(mesh, c, progress.portion(0, 0.7));
     if (!found) return console.fail(found.error());
     fields = std::move(*found);
     say_flow<D>(mesh, fields.flow, console);
+  }
+  NodeField field;
+  if (!asked.field.empty()) {
+    if constexpr (D == 3) {
+      Result<NodeField> found = external_field(mesh, c, progress.portion(0.7, 0.8), console);
+      if (!found) return console.fail(found.error());
+      field = std::move(*found);
+      const bool scalar = field.components == 1;
+      if (asked.method != "field" && scalar != (asked.method == "indicator"))
+        return console.fail({Code::usage,
+                             "\"" + field.name + "\" is a " + (scalar ? "number" : "vector") +
+                                 ", which \"" + asked.method + "\" cannot use.",
+                             "An indicator is a number; a velocity is a vector."});
+    } else {
+      return console.fail({Code::usage, "A field of a file needs a mesh of tetrahedra.", ""});
+    }
   }
 
   MetricField<D> local;
@@ -276,7 +307,7 @@ int solve_and_correct(const SimplexMesh<D>& whole, MetricField<D> metric,
       local.clear();
       for (const NodeId n : old_id) local.push_back(metric[n]);
     }
-    auto done = corrected<D>(mesh, local, fields, of_file, c, progress.portion(0.8, 0.95));
+    auto done = corrected<D>(mesh, local, fields, field, c, progress.portion(0.8, 0.95));
     if (!done) return console.fail(done.error());
     console.say("corrected by " + c.correct + ": the metric asked for " +
                 grouped(static_cast<std::size_t>(done->elements_before)) + " elements, now for " +
@@ -306,15 +337,26 @@ int solve_and_correct(const SimplexMesh<D>& whole, MetricField<D> metric,
 }
 
 Result<void> check_usage(const FlowCommand& c) {
-  const std::vector<std::string> methods = {"",          "acceleration", "velocity",   "strain",
-                                            "direction", "residual",     "directional"};
-  const bool field = c.correct.starts_with(kField);
-  if (!field && std::find(methods.begin(), methods.end(), c.correct) == methods.end())
+  const Asked asked = asked_of(c.correct);
+  const bool field = c.correct.find(':') != std::string::npos;
+  bool known = c.correct.empty();
+  for (const char* name : {"field", "indicator", "acceleration", "strain", "combined", "direction"})
+    known = known || (field && !asked.field.empty() && asked.method == name);
+  for (const FlowMethod method : kFlowMethods)
+    known = known || (!field && asked.method == flow_method_name(method));
+  if (!known) {
+    std::string names;
+    for (const FlowMethod method : kFlowMethods)
+      names += std::string(flow_method_name(method)) + ", ";
     return Error{Code::usage, "--correct knows no method \"" + c.correct + "\".",
-                 "Use acceleration, velocity, strain, direction, residual, directional or "
-                 "field:NAME."};
+                 "Use " + names +
+                     "or of a field field:NAME, indicator:NAME, acceleration:NAME, strain:NAME, "
+                     "or direction:NAME."};
+  }
   if (!field && c.gates.empty() && c.rates.empty())
     return Error{Code::usage, "flow needs a gate.", "Give --gate or --gate-rate."};
+  if (!field && !c.field_file.empty())
+    return Error{Code::usage, "--field needs the name of a field.", "Use --correct field:NAME."};
   if (field && !c.output.empty() && c.gates.empty() && c.rates.empty())
     return Error{Code::usage, "Without a gate there is no flow to write.",
                  "Leave --output out, or give --gate."};
@@ -327,13 +369,13 @@ Result<void> check_usage(const FlowCommand& c) {
 
 int run_flow(const FlowCommand& c, Console& console) {
   if (Result<void> fine = check_usage(c); !fine) return console.fail(fine.error());
-  Result<Input> input = read_input(c.mesh, console.progress().portion(0, 0));
+  MetricField<3> metric;
+  const Result<AnyMesh> input = read_any(c.mesh, &metric, console.progress().portion(0, 0));
   if (!input) return console.fail(of_input(input.error()));
-  if (const auto* mesh = std::get_if<SimplexMesh<3>>(&input->mesh))
-    return solve_and_correct<3>(*mesh, std::move(input->metric), std::move(input->fields), c,
-                                console);
-  if (const auto* mesh = std::get_if<SimplexMesh<2>>(&input->mesh))
-    return solve_and_correct<2>(*mesh, {}, {}, c, console);
+  if (const auto* mesh = std::get_if<SimplexMesh<3>>(&*input))
+    return solve_and_correct<3>(*mesh, std::move(metric), c, console);
+  if (const auto* mesh = std::get_if<SimplexMesh<2>>(&*input))
+    return solve_and_correct<2>(*mesh, {}, c, console);
   return console.fail(
       {Code::usage, "\"" + c.mesh + "\" is a 4D mesh.", "Flows are solved in 2D and 3D."});
 }

@@ -134,12 +134,23 @@ int tell_forecast(const std::vector<BodyForecast>& bodies, bool with_sizing, Con
   for (const BodyForecast& b : bodies) {
     say(b.name, b.mesh.natural);
     if (with_sizing) say(b.name + ", sizes corrected", b.mesh.corrected);
-    console.emit(dump({{"phase", "forecast"},
-                       {"body", b.name},
-                       {"natural", json_of(b.mesh.natural)},
-                       {"corrected", json_of(b.mesh.corrected)},
-                       {"samples", b.mesh.samples},
-                       {"seconds", b.seconds}}));
+    Json told{{"phase", "forecast"},
+              {"body", b.name},
+              {"natural", json_of(b.mesh.natural)},
+              {"corrected", json_of(b.mesh.corrected)},
+              {"samples", b.mesh.samples},
+              {"seconds", b.seconds}};
+    if (b.flow) {
+      const MeshForecast& f = b.flow->mesh;
+      console.say(b.name + ", by the flow, solved " + std::to_string(b.flow->solves) +
+                  (b.flow->solves == 1 ? " time" : " times") + ": at most about " +
+                  grouped(static_cast<std::size_t>(f.nodes)) + " nodes, " +
+                  grouped(static_cast<std::size_t>(f.elements)) + " elements and " +
+                  grouped(static_cast<std::size_t>(f.memory) + 1) + " MB");
+      told["flow"] = json_of(f);
+      told["flow"]["solves"] = b.flow->solves;
+    }
+    console.emit(dump(told));
   }
   return 0;
 }

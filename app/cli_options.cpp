@@ -215,13 +215,25 @@ void add_flow(CLI::App* f, FlowCommand& flow) {
   f->add_option("-o,--output", flow.output, "VTU file to write, with all fields")
       ->option_text("FILE");
   auto* correct =
-      f->add_option("--correct", flow.correct,
-                    "Correct the metric of the mesh: by the gradient of the acceleration or of the "
-                    "velocity (acceleration, velocity), by the strain rate (strain), by the change "
-                    "of direction or the residual smoothed over the elements (direction, residual, "
-                    "directional), or by the gradient of a field of the .vtu at its nodes "
-                    "(field:NAME), which needs no gate")
+      f->add_option(
+           "--correct", flow.correct,
+           "Correct the metric of the mesh: by the gradient of the acceleration or of the "
+           "velocity (acceleration, velocity), by the strain rate (strain), by the velocity "
+           "and its curvature (combined), or by the "
+           "change of direction or the residual smoothed over the elements (direction, "
+           "residual, directional). Of a solver's result, without a gate: by the gradient "
+           "of any field (field:NAME), by an indicator to smooth (indicator:NAME), or by "
+           "a velocity as above (acceleration:NAME, strain:NAME, combined:NAME, direction:NAME)")
           ->option_text("METHOD");
+  auto* field = f->add_option("--field", flow.field_file,
+                              "VTU file of a solver's result with that field at its nodes or "
+                              "cells, on any mesh of the same body [the mesh to correct]")
+                    ->option_text("FILE")
+                    ->needs(correct);
+  f->add_option("--field-unit", flow.field_unit, "Its unit of length: mm, cm, m or inch [mm]")
+      ->option_text("UNIT")
+      ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
+      ->needs(field);
   number("--strength", flow.strength, "MU",
          "Of the gradient term: times the mu that lets it dominate the metric [1]")
       ->needs(correct);
@@ -384,7 +396,8 @@ void add_flow_of_loop(CLI::App* m, MeshCommand& mesh) {
     m->add_option(name, value, what)->option_text(text)->check(CLI::PositiveNumber);
   };
   number("--flow-strength", mesh.flow_strength, "MU",
-         "Of acceleration, velocity and strain: times the mu that lets them dominate the metric "
+         "Of acceleration, velocity, strain and combined: times the mu that lets them dominate the "
+         "metric "
          "[1]");
   number("--flow-beta", mesh.flow_beta, "B",
          "Of direction and the residuals: factor of the mean error; below 1 refines [1]");

@@ -153,6 +153,8 @@ struct FlowCommand {
   double viscosity = 1, tolerance = 1e-8;
   std::string correct;  ///< empty: nothing is corrected
   std::string correct_out;
+  std::string field_file;  ///< where the field NAME of METHOD:NAME is; empty: the mesh itself
+  std::string field_unit = "mm";
   double strength = 1, beta = 1;
   std::optional<double> h_min, elements;
   int threads = 0;

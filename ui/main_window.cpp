@@ -461,13 +461,16 @@ void MainWindow::show_progress(double fraction, const QString& phase, double sec
   QString text = phase.isEmpty() ? state_->text() : phase;
   if (session_->activity() == Activity::running) {
     // The first mesh is iteration 0: as many are there as the one under way has before it.
-    if (const auto done = session_->iterations().size(); done > 0 && !phase.startsWith("flow"))
+    if (const auto done = session_->iterations().size();
+        done > 0 && !phase.startsWith(QString::fromStdString(kFlowPhase))) {
+      const int most = session_->run_study().options.iterations;
       text = tr("Iteration %1 of at most %2%3")
-                 .arg(std::min<int>(static_cast<int>(done), session_->study().options.iterations))
-                 .arg(session_->study().options.iterations)
+                 .arg(std::min<int>(static_cast<int>(done), most))
+                 .arg(most)
                  .arg(phase.isEmpty() || phase.startsWith("iteration") ? QString() : ":  " + phase);
-    else if (!text.isEmpty())
+    } else if (!text.isEmpty()) {
       text[0] = text[0].toUpper();
+    }
     text += tr("   %1 %").arg(static_cast<int>(fraction * 100));
     if (seconds_left >= 0) text += tr("   %1 left").arg(duration(seconds_left));
   }

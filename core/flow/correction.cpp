@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/flow/indicators.h"
+#include "core/geometry/bvh.h"
 #include "core/mesh/quality.h"
 #include "core/optimize/metric_conditioning.h"
 
@@ -21,6 +22,18 @@ Result<void> positive(const std::optional<double>& value, const char* name) {
   if (value && !(*value > 0 && std::isfinite(*value)))
     return Error{Code::usage, std::string(name) + " is not a positive number.", ""};
   return {};
+}
+
+/// The share of the curvature in `combined_tensors`: with more the long walls get too little.
+constexpr double kCurvature = 1.0 / 3;
+
+/// Of numbers above zero; zero without any.
+double strongest_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
 
 /// `metric`, but no size below h_min that was not below it in `before`.
@@ -133,6 +146,49 @@ std::vector<Mat<D>> strain_tensors(const SimplexMesh<D>& mesh, const std::vector
 }
 
 template <int D>
+std::vector<Mat<D>> curvature_tensors(const SimplexMesh<D>& mesh, const std::vector<Vec<D>>& field,
+                                      int threads) {
+  const auto gradient =
+      nodal_means<D, Mat<D>>(mesh, element_gradients<D>(mesh, field, threads), threads);
+  std::vector<Mat<D>> out(gradient.size(), Mat<D>::Zero());
+  for (int i = 0; i < D; ++i) {
+    std::vector<Vec<D>> row(gradient.size());
+    for (std::size_t n = 0; n < row.size(); ++n) row[n] = gradient[n].row(i).transpose();
+    const std::vector<Mat<D>> square = gradient_tensors<D>(mesh, row, threads);
+    for (std::size_t n = 0; n < out.size(); ++n) out[n] += square[n];
+  }
+  parallel_each(out.size(), threads, {}, [&](std::size_t n) {
+    const Spectrum<D> found = spectrum<D>(out[n]);
+    out[n] = found.vectors * found.values.cwiseMax(0).cwiseSqrt().asDiagonal() *
+             found.vectors.transpose();
+  });
+  return out;
+}
+
+template <int D>
+std::vector<Mat<D>> combined_tensors(const SimplexMesh<D>& mesh, const std::vector<Vec<D>>& field,
+                                     int threads) {
+  std::vector<Mat<D>> out = gradient_tensors<D>(mesh, field, threads);
+  const std::vector<Mat<D>> curvature = curvature_tensors<D>(mesh, field, threads);
+  const auto strongest = [](const std::vector<Mat<D>>& tensors) {
+    std::vector<double> largest(tensors.size() - 1);
+    for (std::size_t n = 1; n < tensors.size(); ++n)
+      largest[n - 1] = spectrum<D>(tensors[n]).values[D - 1];
+    return strongest_of(std::move(largest));
+  };
+  const double steepest = strongest(out), most = strongest(curvature);
+  Box<D> box;
+  for (std::size_t n = 1; n < mesh.points.size(); ++n) box.add(mesh.points[n]);
+  // Rounding alone is no curvature.
+  const bool curved = most * (box.hi - box.lo).norm() > 1e-9 * std::sqrt(steepest);
+  for (std::size_t n = 1; n < out.size() && steepest > 0; ++n) {
+    out[n] /= steepest;
+    if (curved) out[n] += kCurvature / most * curvature[n];
+  }
+  return out;
+}
+
+template <int D>
 Result<Corrected<D>> add_tensors(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
                                  const std::vector<Mat<D>>& tensors, const AddParams& params,
                                  const Progress& progress) {
@@ -167,10 +223,7 @@ Result<Corrected<D>> add_tensors(const SimplexMesh<D>& mesh, const MetricField<D
   if (ratio.empty()) {
     out.metric = metric;
   } else {
-    const auto at = ratio.begin() +
-                    static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(ratio.size() - 1));
-    std::nth_element(ratio.begin(), at, ratio.end());
-    out.weight = kDominance * params.strength * params.strength / *at;
+    out.weight = kDominance * params.strength * params.strength / strongest_of(ratio);
     out.metric = with(out.weight);
   }
   out.elements_after = forecast_elements<D>(mesh, out.metric);
@@ -303,6 +356,14 @@ template std::vector<Mat<3>> gradient_tensors(const SimplexMesh<3>&, const std::
                                               int);
 template std::vector<Mat<2>> strain_tensors(const SimplexMesh<2>&, const std::vector<Vec<2>>&, int);
 template std::vector<Mat<3>> strain_tensors(const SimplexMesh<3>&, const std::vector<Vec<3>>&, int);
+template std::vector<Mat<2>> curvature_tensors(const SimplexMesh<2>&, const std::vector<Vec<2>>&,
+                                               int);
+template std::vector<Mat<3>> curvature_tensors(const SimplexMesh<3>&, const std::vector<Vec<3>>&,
+                                               int);
+template std::vector<Mat<2>> combined_tensors(const SimplexMesh<2>&, const std::vector<Vec<2>>&,
+                                              int);
+template std::vector<Mat<3>> combined_tensors(const SimplexMesh<3>&, const std::vector<Vec<3>>&,
+                                              int);
 template Result<Corrected<2>> add_tensors(const SimplexMesh<2>&, const MetricField<2>&,
                                           const std::vector<Mat<2>>&, const AddParams&,
                                           const Progress&);

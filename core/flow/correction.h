@@ -26,6 +26,17 @@ template <int D>
 std::vector<Mat<D>> strain_tensors(const SimplexMesh<D>& mesh, const std::vector<Vec<D>>& field,
                                    int threads = 0);
 
+/// |H|, the root of the sum of the squared matrices of second derivatives of the components: what
+/// the gradient of a P1 field misses.
+template <int D>
+std::vector<Mat<D>> curvature_tensors(const SimplexMesh<D>& mesh, const std::vector<Vec<D>>& field,
+                                      int threads = 0);
+/// Of a velocity, (5.7) and a third of |H|, each over its strongest (the quantile .99 of its
+/// largest eigenvalue): layers in long walls and small elements at corners at once.
+template <int D>
+std::vector<Mat<D>> combined_tensors(const SimplexMesh<D>& mesh, const std::vector<Vec<D>>& field,
+                                     int threads = 0);
+
 template <int D>
 struct Corrected {
   MetricField<D> metric;                           ///< [node]

@@ -24,26 +24,29 @@ struct CorrectionField::Impl {
   std::vector<double> factors;
 };
 
-Result<CorrectionField> CorrectionField::adding(const SimplexMesh<3>& mesh,
-                                                const std::vector<Mat<3>>& tensors,
-                                                const Progress& progress) {
+Result<CorrectionField> CorrectionField::make(const SimplexMesh<3>& mesh,
+                                              std::vector<Mat<3>> tensors,
+                                              std::vector<double> factors,
+                                              const Progress& progress) {
   auto impl = std::make_shared<Impl>(mesh, progress);
   if (progress.cancelled()) return cancelled_error();
-  impl->tensors = tensors;
+  impl->tensors = std::move(tensors);
+  impl->factors = std::move(factors);
   CorrectionField out;
   out.impl_ = std::move(impl);
   return out;
 }
 
+Result<CorrectionField> CorrectionField::adding(const SimplexMesh<3>& mesh,
+                                                std::vector<Mat<3>> tensors,
+                                                const Progress& progress) {
+  return make(mesh, std::move(tensors), {}, progress);
+}
+
 Result<CorrectionField> CorrectionField::scaling(const SimplexMesh<3>& mesh,
-                                                 const std::vector<double>& factors,
+                                                 std::vector<double> factors,
                                                  const Progress& progress) {
-  auto impl = std::make_shared<Impl>(mesh, progress);
-  if (progress.cancelled()) return cancelled_error();
-  impl->factors = factors;
-  CorrectionField out;
-  out.impl_ = std::move(impl);
-  return out;
+  return make(mesh, {}, std::move(factors), progress);
 }
 
 Metric<3> CorrectionField::apply(const Vec<3>& x, const Metric<3>& asked, double h_min) const {

@@ -16,13 +16,11 @@ class CorrectionField {
  public:
   CorrectionField() = default;  ///< changes nothing
   /// Adds tensors >= 0 given at the nodes, linear in between. Errors: cancelled.
-  static Result<CorrectionField> adding(const SimplexMesh<3>& mesh,
-                                        const std::vector<Mat<3>>& tensors,
+  static Result<CorrectionField> adding(const SimplexMesh<3>& mesh, std::vector<Mat<3>> tensors,
                                         const Progress& progress = {});
   /// Multiplies all sizes by factors in (0, 1] given at the nodes, linear in between. Errors:
   /// cancelled.
-  static Result<CorrectionField> scaling(const SimplexMesh<3>& mesh,
-                                         const std::vector<double>& factors,
+  static Result<CorrectionField> scaling(const SimplexMesh<3>& mesh, std::vector<double> factors,
                                          const Progress& progress = {});
 
   bool empty() const { return !impl_; }
@@ -33,6 +31,8 @@ class CorrectionField {
 
  private:
   struct Impl;
+  static Result<CorrectionField> make(const SimplexMesh<3>& mesh, std::vector<Mat<3>> tensors,
+                                      std::vector<double> factors, const Progress& progress);
   std::shared_ptr<const Impl> impl_;
 };
 

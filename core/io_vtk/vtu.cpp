@@ -4,6 +4,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
+#include <vtkDataSetTriangleFilter.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkIdList.h>
@@ -11,6 +12,7 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -300,7 +302,9 @@ Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
   return target->commit();
 }
 
-Result<MeshContent> read_vtu(const std::filesystem::path& file) {
+namespace {
+
+Result<vtkSmartPointer<vtkUnstructuredGrid>> read_grid(const std::filesystem::path& file) {
   // VTK's parser takes anything it is given; what is no VTU file at all is better told before.
   Result<std::string> bytes = read_file(file);
   if (!bytes) return bytes.error();
@@ -313,18 +317,84 @@ Result<MeshContent> read_vtu(const std::filesystem::path& file) {
   if (bytes->rfind("</VTKFile>") == std::string::npos)
     return refuse("the file ends too early", "It may be truncated; write or copy it again.");
 
-  const Quiet quiet;
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
-  vtkUnstructuredGrid* grid = reader->GetOutput();
+  const vtkSmartPointer<vtkUnstructuredGrid> grid = reader->GetOutput();
   if (reader->GetErrorCode() != 0 || !grid || !consistent(grid))
     return refuse("the file is damaged", "Write or copy it again.");
+  return grid;
+}
+
+Error no_tetrahedra(const std::filesystem::path& file) {
+  return {Code::bad_input, "\"" + file.string() + "\": it holds no tetrahedra.",
+          "Only volume meshes of tetrahedra can be used."};
+}
+
+/// Arrays of the cells of a grid of tetrahedra at its points, behind those in `fields`.
+void add_cell_fields(vtkUnstructuredGrid* grid, const SimplexMesh<3>& mesh,
+                     std::vector<NodeField>& fields) {
+  std::vector<double> volume(mesh.elements.size()), around(mesh.points.size(), 0);
+  for (std::size_t e = 0; e < volume.size(); ++e) {
+    volume[e] = std::abs(signed_measure<3>(mesh.corners(mesh.elements[e])));
+    for (const NodeId n : mesh.elements[e]) around[n] += volume[e];
+  }
+  for (int a = 0; a < grid->GetCellData()->GetNumberOfArrays(); ++a) {
+    vtkDataArray* array = grid->GetCellData()->GetArray(a);
+    if (!array || !array->GetName()) continue;
+    const int components = array->GetNumberOfComponents();
+    NodeField field{array->GetName(), components, {}};
+    const auto known = [&](const NodeField& f) { return f.name == field.name; };
+    if ((components != 1 && components != 3) || std::any_of(fields.begin(), fields.end(), known))
+      continue;
+    field.values.assign(mesh.points.size() * static_cast<std::size_t>(components), 0);
+    std::size_t e = 0;
+    for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
+      if (grid->GetCellType(c) != VTK_TETRA) continue;
+      for (const NodeId n : mesh.elements[e])
+        for (int k = 0; k < components; ++k)
+          if (around[n] > 0)
+            field.values[n * static_cast<std::size_t>(components) + static_cast<std::size_t>(k)] +=
+                volume[e] / around[n] * array->GetComponent(c, k);
+      ++e;
+    }
+    fields.push_back(std::move(field));
+  }
+}
+
+}  // namespace
+
+Result<MeshContent> read_vtu(const std::filesystem::path& file) {
+  const Quiet quiet;
+  const auto grid = read_grid(file);
+  if (!grid) return grid.error();
   MeshContent content;
-  take(grid, content);
-  if (content.mesh.elements.empty())
-    return refuse("it holds no tetrahedra", "Only volume meshes of tetrahedra can be used.");
+  take(*grid, content);
+  if (content.mesh.elements.empty()) return no_tetrahedra(file);
   return content;
+}
+
+Result<SolverResult> read_vtu_result(const std::filesystem::path& file) {
+  const Quiet quiet;
+  const auto grid = read_grid(file);
+  if (!grid) return grid.error();
+  vtkSmartPointer<vtkUnstructuredGrid> cut = *grid;
+  for (vtkIdType c = 0; c < cut->GetNumberOfCells(); ++c) {
+    const int type = cut->GetCellType(c);
+    if (type == VTK_TETRA || type == VTK_TRIANGLE) continue;
+    vtkNew<vtkDataSetTriangleFilter> cutter;
+    cutter->SetInputData(cut);
+    cutter->TetrahedraOnlyOn();
+    cutter->Update();
+    cut = cutter->GetOutput();
+    break;
+  }
+  MeshContent content;
+  take(cut, content);
+  if (content.mesh.elements.empty()) return no_tetrahedra(file);
+  SolverResult out{std::move(content.mesh), node_fields_of(cut)};
+  add_cell_fields(cut, out.mesh, out.fields);
+  return out;
 }
 
 }  // namespace lamella

@@ -24,4 +24,16 @@ Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
 /// size).
 Result<MeshContent> read_vtu(const std::filesystem::path& file);
 
+/// What a solver has written: its mesh, and its numbers and vectors at the nodes.
+struct SolverResult {
+  SimplexMesh<3> mesh;
+  std::vector<NodeField> fields;
+};
+
+/// Any solver's grid: cells that are no tetrahedra are cut into such, and arrays of cells become
+/// fields of the nodes, the mean of the cells around weighted by their volumes; where an array of
+/// points has the name already, that one counts. Coordinates as in the file.
+/// Errors: as `read_vtu`.
+Result<SolverResult> read_vtu_result(const std::filesystem::path& file);
+
 }  // namespace lamella

@@ -14,6 +14,7 @@ std::vector<Mat<3>> tensors_of(const SimplexMesh<3>& mesh, const std::vector<Vec
                                FlowMethod method, int threads) {
   if (method == FlowMethod::velocity) return gradient_tensors<3>(mesh, velocity, threads);
   if (method == FlowMethod::strain) return strain_tensors<3>(mesh, velocity, threads);
+  if (method == FlowMethod::combined) return combined_tensors<3>(mesh, velocity, threads);
   return gradient_tensors<3>(mesh, acceleration_norm<3>(mesh, velocity, threads), threads);
 }
 

@@ -1,12 +1,32 @@
 #include "core/study/forecast.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "core/natural/natural_metric.h"
 #include "core/study/first_mesh.h"
+#include "core/study/flow_round.h"
 #include "core/study/request.h"
 
 namespace lamella {
+namespace {
+
+/// Bytes a node takes at the most while the flow is solved (measured, rounded up).
+constexpr double kFlowBytesANode = 3000;
+
+}  // namespace
+
+std::optional<FlowForecast> forecast_flow(const Study& study, const std::string& body,
+                                          const MeshForecast& mesh) {
+  if (!has_flow(study, body)) return std::nullopt;
+  FlowForecast out;
+  out.solves = study.flow->rounds + 1;
+  const double growth = study.flow->rounds > 0 ? study.flow->growth : 1;
+  out.mesh.elements = growth * mesh.elements;
+  out.mesh.nodes = growth * mesh.nodes;
+  out.mesh.memory = std::max(growth * mesh.memory, 1e-6 * kFlowBytesANode * out.mesh.nodes);
+  return out;
+}
 
 Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& first,
                                      const MetricFunction<3>& natural, const SizingField& sizing,
@@ -51,8 +71,8 @@ Result<std::vector<BodyForecast>> forecast_from(const std::vector<FirstMesh>& fi
         study, first[b].mesh, [&](const Vec<3>& x) { return detector.at(x, natural).metric; },
         *sizing, progress.portion(at / count, (at + 1) / count));
     if (!mesh) return mesh.error();
-    bodies.push_back(
-        {part.name, *mesh, std::chrono::duration<double>(Clock::now() - start).count()});
+    bodies.push_back({part.name, *mesh, forecast_flow(study, part.name, mesh->corrected),
+                      std::chrono::duration<double>(Clock::now() - start).count()});
   }
   return bodies;
 }

@@ -10,11 +10,19 @@
 
 namespace lamella {
 
+/// What rounds of the flow may make of a mesh, at the most: their budget is a bound, and not all of
+/// it need be used.
+struct FlowForecast {
+  int solves = 0;     ///< of the flow: before each round and after the last
+  MeshForecast mesh;  ///< its memory is that of the flow solver or the adaption, whichever is more
+};
+
 /// The mesh of one body that `run` may be expected to make.
 struct BodyForecast {
   std::string name;
-  SizingForecast mesh;
-  double seconds = 0;  ///< the forecast itself took, without the first mesh
+  SizingForecast mesh;                 ///< before any flow
+  std::optional<FlowForecast> flow{};  ///< of a body with a gate
+  double seconds = 0;                  ///< the forecast itself took, without the first mesh
 };
 
 /// Of a body whose first mesh is there; `natural` is the detector's answer at a point.
@@ -22,6 +30,10 @@ struct BodyForecast {
 Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& first,
                                      const MetricFunction<3>& natural, const SizingField& sizing,
                                      const Progress& progress = {});
+
+/// Of the body called `body`, whose mesh without a flow is `mesh`; null where no flow is asked for.
+std::optional<FlowForecast> forecast_flow(const Study& study, const std::string& body,
+                                          const MeshForecast& mesh);
 
 /// From the first mesh of every body, without adapting it. `meshers` as for `run`.
 /// Errors: those of `run`.

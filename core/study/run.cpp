@@ -294,11 +294,14 @@ class BodyLoop {
     Result<SizingForecast> made = forecast_body(study_, first, natural, sizing_, progress);
     if (!made) return made.error();
     forecast_ = made->corrected;
-    if (!options_.memory || forecast_.memory <= *options_.memory) return {};
+    // With the flow, which solves on the mesh and then refines it.
+    const std::optional<FlowForecast> flow = forecast_flow(study_, part_.name, forecast_);
+    const MeshForecast& most = flow ? flow->mesh : forecast_;
+    if (!options_.memory || most.memory <= *options_.memory) return {};
     const auto whole = [](double x) { return std::to_string(std::llround(x)); };
     return Error{Code::memory,
-                 "Body \"" + part_.name + "\": about " + whole(forecast_.nodes) + " nodes and " +
-                     whole(forecast_.memory) + " MB are to be expected, above the " +
+                 "Body \"" + part_.name + "\": about " + whole(most.nodes) + " nodes and " +
+                     whole(most.memory) + " MB are to be expected, above the " +
                      whole(*options_.memory) + " MB allowed.",
                  "Allow more memory, ask for fewer layers, or raise h_min or a size."};
   }
@@ -506,8 +509,9 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
     const std::size_t before = record_count();
     const auto since = Clock::now();
     const double from = kFirstMeshShare + width * (iterations + (i == 0 ? 0 : i - 0.5));
-    const Progress round = progress.portion(from, from + (i == 0 ? 0.5 : 1) * width,
-                                            i == 0 ? "flow" : "flow " + std::to_string(i));
+    const Progress round =
+        progress.portion(from, from + (i == 0 ? 0.5 : 1) * width,
+                         i == 0 ? kFlowPhase : kFlowPhase + (" " + std::to_string(i)));
     for (std::size_t b = 0; b < bodies.size() && !outcome.cancelled; ++b) {
       if (!bodies[b].wants_flow()) continue;
       const auto at = static_cast<double>(b);

@@ -62,6 +62,9 @@ struct Outcome {
 /// once more, with its flow.
 using IterationSink = std::function<void(const IterationRecord&, std::shared_ptr<const MeshState>)>;
 
+/// What the phases of progress begin with in the rounds of the flow.
+inline const std::string kFlowPhase = "flow";
+
 /// The main loop: first mesh, then metric -> adapt -> record until layers and nodes settle.
 /// Cancel after the first mesh exists returns an Outcome with `cancelled` set; before, an Error.
 /// `meshers` are tried in order for the first mesh of each body.

@@ -20,13 +20,18 @@ const std::vector<std::string> kFrames = {"cartesian", "cylindrical", "spherical
 const std::vector<std::string> kProgressions = {"linear", "geometric"};
 
 /// The value of the member by its name, `unset` where there is none.
-template <class Value>
-Value one_of(Members& m, const std::string& member, std::initializer_list<Value> values,
-             Value unset, std::string_view (*name)(Value)) {
+template <class Values, class Value>
+Value one_of(Members& m, const std::string& member, const Values& values, Value unset,
+             std::string_view (*name)(Value)) {
   if (!m.has(member)) return unset;
   std::vector<std::string> names;
   for (const Value v : values) names.emplace_back(name(v));
-  return *(values.begin() + m.choice(member, names));
+  return *(std::begin(values) + m.choice(member, names));
+}
+template <class Value>
+Value one_of(Members& m, const std::string& member, std::initializer_list<Value> values,
+             Value unset, std::string_view (*name)(Value)) {
+  return one_of<std::initializer_list<Value>, Value>(m, member, values, unset, name);
 }
 
 BodySettings read_body(const Json& json, std::size_t index, std::string& complaint) {
@@ -265,10 +270,7 @@ BoundaryGroup read_group(const Json& json, std::size_t index, std::string& compl
 StudyFlow read_flow(const Json& json, std::string& complaint) {
   StudyFlow flow;
   Members m(json, "flow", complaint);
-  flow.method = one_of(m, "method",
-                       {FlowMethod::acceleration, FlowMethod::velocity, FlowMethod::strain,
-                        FlowMethod::direction, FlowMethod::residual, FlowMethod::directional},
-                       flow.method, flow_method_name);
+  flow.method = one_of(m, "method", kFlowMethods, flow.method, flow_method_name);
   m.number("strength", flow.strength, false);
   m.number("beta", flow.beta, false);
   m.number("growth", flow.growth, false);

@@ -1,3 +1,5 @@
+#include <fstream>
+
 #include "core/io/medit.h"
 #include "core/io/msh.h"
 #include "core/metric/metric.h"
@@ -43,7 +45,7 @@ TEST_F(CliFlow, TellsRatesThatBalanceAndWritesTheFields) {
 
 TEST_F(CliFlow, EveryMethodWritesAMetricWithinItsBounds) {
   for (const std::string method :
-       {"acceleration", "velocity", "strain", "direction", "residual", "directional"}) {
+       {"acceleration", "velocity", "strain", "combined", "direction", "residual", "directional"}) {
     ASSERT_EQ(run("flow c.msh --gate gate --vent vent --correct " + method +
                   " --h-min 0.05 --elements 3000 --correct-out " + method + ".sol --json"),
               0)
@@ -76,6 +78,84 @@ TEST_F(CliFlow, AFieldOfTheFileCorrectsWithoutAGate) {
     EXPECT_GT(std::abs(spectrum<3>((*metric)[n]).vectors.col(2)[0]), 0.9);
   EXPECT_EQ(run("flow f.vtu --correct field:nothing --correct-out n.sol"), 2);
   EXPECT_NE(err.find("pressure"), std::string::npos) << err;
+}
+
+/// What another solver may write: hexahedra, numbers of 32 bits, vectors of cells, meters.
+void write_foreign(const std::filesystem::path& file, int cells, double unit) {
+  const int nx = 3 * cells, m = cells + 1;
+  std::ofstream to(file);
+  to << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\">"
+     << "<UnstructuredGrid><Piece NumberOfPoints=\"" << (nx + 1) * m * m << "\" NumberOfCells=\""
+     << nx * cells * cells << "\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">";
+  for (int i = 0; i <= nx; ++i)
+    for (int j = 0; j < m; ++j)
+      for (int k = 0; k < m; ++k)
+        to << unit * i / cells << ' ' << unit * j / cells << ' ' << unit * k / cells << '\n';
+  to << "</DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\">";
+  const auto at = [&](int i, int j, int k) { return (i * m + j) * m + k; };
+  std::string centers, speeds;
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < cells; ++j)
+      for (int k = 0; k < cells; ++k) {
+        for (const auto& [a, b, c] : std::vector<std::array<int, 3>>{{0, 0, 0},
+                                                                     {1, 0, 0},
+                                                                     {1, 1, 0},
+                                                                     {0, 1, 0},
+                                                                     {0, 0, 1},
+                                                                     {1, 0, 1},
+                                                                     {1, 1, 1},
+                                                                     {0, 1, 1}})
+          to << at(i + a, j + b, k + c) << ' ';
+        const double y = (j + 0.5) / cells;
+        centers += std::to_string((i + 0.5) / cells) + " ";
+        speeds += std::to_string(y * (1 - y)) + " 0 0 ";
+      }
+  to << "</DataArray><DataArray type=\"Int32\" Name=\"offsets\">";
+  for (int c = 1; c <= nx * cells * cells; ++c) to << 8 * c << ' ';
+  to << "</DataArray><DataArray type=\"UInt8\" Name=\"types\">";
+  for (int c = 0; c < nx * cells * cells; ++c) to << "12 ";
+  to << "</DataArray></Cells><CellData><DataArray type=\"Float32\" Name=\"T\">" << centers
+     << "</DataArray><DataArray type=\"Float32\" Name=\"U\" NumberOfComponents=\"3\">" << speeds
+     << "</DataArray></CellData></Piece></UnstructuredGrid></VTKFile>\n";
+}
+
+TEST_F(CliFlow, AFieldOfAnotherMeshCorrectsThisOne) {
+  write_foreign(folder / "solved.vtu", 5, 1e-3);
+  const std::string field = "flow c.msh --field solved.vtu --field-unit m --correct ";
+  const auto steepest = [&](const std::string& sol) {
+    // The axis of the smallest size, most often.
+    const auto metric = read_sol<3>(folder / sol, mesh.node_count());
+    std::array<std::size_t, 3> axes{};
+    for (std::size_t n = 1; metric.ok() && n < metric->size(); ++n) {
+      Eigen::Index axis = 0;
+      spectrum<3>((*metric)[n]).vectors.col(2).cwiseAbs().maxCoeff(&axis);
+      ++axes[static_cast<std::size_t>(axis)];
+    }
+    return std::max_element(axes.begin(), axes.end()) - axes.begin();
+  };
+  ASSERT_EQ(run(field + "field:T --correct-out t.sol"), 0) << err;  // grows along x
+  EXPECT_EQ(steepest("t.sol"), 0);
+  ASSERT_EQ(run(field + "field:U --correct-out u.sol"), 0) << err;  // changes across y
+  EXPECT_EQ(steepest("u.sol"), 1);
+  for (const std::string method : {"acceleration:U", "strain:U", "direction:U", "indicator:T"})
+    EXPECT_EQ(run(field + method + " --correct-out m.sol"), 0) << method << err;
+}
+
+TEST_F(CliFlow, AFieldThatDoesNotFitIsToldFrom) {
+  write_foreign(folder / "solved.vtu", 3, 1e-3);
+  const std::string out_to = " --correct-out n.sol";
+  // Meters taken for millimeters.
+  EXPECT_EQ(run("flow c.msh --field solved.vtu --correct field:T" + out_to), 3);
+  EXPECT_NE(err.find("unit"), std::string::npos) << err;
+  const std::string field = "flow c.msh --field solved.vtu --field-unit m --correct ";
+  EXPECT_EQ(run(field + "field:p" + out_to), 2);
+  EXPECT_NE(err.find("T, U"), std::string::npos) << err;
+  EXPECT_EQ(run(field + "acceleration:T" + out_to), 2);  // a number is no velocity
+  EXPECT_EQ(run(field + "indicator:U" + out_to), 2);
+  EXPECT_EQ(run(field + "residual:U" + out_to), 2);
+  EXPECT_EQ(run(field + "velocity" + out_to), 2);
+  EXPECT_EQ(run("flow c.msh --field c.msh --correct field:T" + out_to), 2);
+  EXPECT_EQ(run("flow c.msh --field none.vtu --correct field:T" + out_to), 3);
 }
 
 TEST_F(CliFlow, PlanarMeshesAndSymmetries) {

@@ -5,33 +5,21 @@
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QSlider>
-#include <QTest>
 
-#include "core/cad/sample_parts.h"
-#include "tests/support/fake_services.h"
-#include "tests/support/temporary_folder.h"
-#include "ui/actions/actions.h"
+#include "tests/ui/window_fixture.h"
 #include "ui/commands/study_edits.h"
-#include "ui/main_window.h"
 #include "ui/panels/banner.h"
 #include "ui/panels/flow_panel.h"
 #include "ui/session/command_line.h"
-#include "ui/session/session.h"
-#include "ui/views/model_view.h"
 
 namespace lamella::ui {
 namespace {
 
 /// A plate with a made-up mesh and a gate and a vent on two of its faces.
-class FlowTest : public testing::Test {
+class FlowTest : public WindowFixture {
  protected:
-  FlowTest() : window_(fake_.make()) {
-    fake_.step = std::chrono::milliseconds(10);
-    EXPECT_TRUE(write_sample("plate", folder_ / "plate.step"));
-    window_.show();
-    EXPECT_TRUE(QTest::qWaitForWindowExposed(&window_));
-    window_.open_files({QString::fromStdString((folder_ / "plate.step").string())});
-    EXPECT_TRUE(wait_idle());
+  FlowTest() {
+    open_part("plate");
     add_group(session(), GroupKind::gate, session().body(0).name, {0});
     add_group(session(), GroupKind::vent, session().body(0).name, {1});
     Study study = session().study();
@@ -39,23 +27,13 @@ class FlowTest : public testing::Test {
     session().edit("fewer", study);
   }
 
-  Session& session() { return window_.session(); }
-  QAction* action(Act act) { return window_.actions()[act]; }
-  bool wait_idle() {
-    return QTest::qWaitFor([this] { return session().activity() == Activity::idle; }, 20000);
-  }
   void solve() {
-    action(Act::run)->trigger();
-    ASSERT_TRUE(wait_idle());
+    run();
     action(Act::solve_flow)->trigger();
     ASSERT_EQ(session().activity(), Activity::flowing);
     ASSERT_TRUE(wait_idle());
     ASSERT_TRUE(session().shown_state()->flow);
   }
-
-  test::TemporaryFolder folder_;
-  test::FakeServices fake_;
-  MainWindow window_;
 };
 
 TEST_F(FlowTest, TheFlowIsSolvedAndSeen) {
@@ -128,7 +106,7 @@ TEST_F(FlowTest, TheStrengthIsUndoneAndSaysWhatItComesTo) {
   EXPECT_LT(counted(), usual);
   const Result<std::string> line = command_line(session().study());
   ASSERT_TRUE(line.ok());
-  EXPECT_NE(line->find("--flow acceleration"), std::string::npos);
+  EXPECT_NE(line->find("--flow combined"), std::string::npos);
   EXPECT_NE(line->find("--gate gate=1"), std::string::npos);
   action(Act::undo)->trigger();
   EXPECT_EQ(session().study().flow->strength, 1);

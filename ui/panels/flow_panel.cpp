@@ -33,6 +33,8 @@ QString method_title(FlowMethod method) {
       return FlowPanel::tr("Velocity");
     case FlowMethod::strain:
       return FlowPanel::tr("Strain rate");
+    case FlowMethod::combined:
+      return FlowPanel::tr("Velocity and curvature");
     case FlowMethod::direction:
       return FlowPanel::tr("Change of direction");
     case FlowMethod::residual:

@@ -125,9 +125,10 @@ MeshForecast Forecaster::total() const {
   MeshForecast all;
   if (!bodies_) return all;
   for (const BodyForecast& body : *bodies_) {
-    all.nodes += body.mesh.corrected.nodes;
-    all.elements += body.mesh.corrected.elements;
-    all.memory = std::max(all.memory, body.mesh.corrected.memory);
+    const MeshForecast& mesh = body.flow ? body.flow->mesh : body.mesh.corrected;
+    all.nodes += mesh.nodes;
+    all.elements += mesh.elements;
+    all.memory = std::max(all.memory, mesh.memory);
   }
   return all;
 }
@@ -137,14 +138,24 @@ QString Forecaster::description() const {
   if (worker_.busy()) return tr("Counting…");
   if (!failure_.isEmpty()) return failure_;
   if (!bodies_) return tr("Not known yet.");
-  double natural = 0;
-  for (const BodyForecast& body : *bodies_) natural += body.mesh.natural.nodes;
+  double natural = 0, corrected = 0;
+  int solves = 0;
+  for (const BodyForecast& body : *bodies_) {
+    natural += body.mesh.natural.nodes;
+    corrected += body.mesh.corrected.nodes;
+    if (body.flow) solves += body.flow->solves;
+  }
   const MeshForecast all = total();
-  QString text = tr("About %L1 nodes and %L2 elements; meshing takes about %L3 MB.")
-                     .arg(all.nodes, 0, 'f', 0)
-                     .arg(all.elements, 0, 'f', 0)
-                     .arg(all.memory, 0, 'f', 0);
-  if (std::abs(all.nodes - natural) > 0.5)
+  const QString form =
+      solves > 0 ? tr("At most about %L1 nodes and %L2 elements; meshing takes about %L3 MB.")
+                 : tr("About %L1 nodes and %L2 elements; meshing takes about %L3 MB.");
+  QString text =
+      form.arg(all.nodes, 0, 'f', 0).arg(all.elements, 0, 'f', 0).arg(all.memory, 0, 'f', 0);
+  if (solves > 0)
+    text += " " + tr("The flow is solved %1 times; before it: %L2 nodes.")
+                      .arg(solves)
+                      .arg(corrected, 0, 'f', 0);
+  if (std::abs(corrected - natural) > 0.5)
     text += " " + tr("Without the sizes: %L1 nodes.").arg(natural, 0, 'f', 0);
   return text;
 }

@@ -50,6 +50,8 @@ class Session : public QObject {
   const Services& services() const { return services_; }
   const Study& study() const { return *study_; }
   std::shared_ptr<const Study> study_value() const { return study_; }
+  /// That of the run whose iterations there are; the present one before any.
+  const Study& run_study() const { return run_study_ ? *run_study_ : *study_; }
   const std::vector<Part>& parts() const { return *parts_; }
   std::shared_ptr<const std::vector<Part>> parts_value() const { return parts_; }
   /// What every body of the study looks like: the parts, the zones as soon as their surfaces are

@@ -35,6 +35,33 @@ double forecast(const SimplexMesh<D>& mesh, const MetricField<D>& metric) {
   return allocation_factor<D>(mesh, metric) * static_cast<double>(mesh.elements.size());
 }
 
+TYPED_TEST(FlowCorrection, CurvatureIsThatOfAQuadraticFieldAndNoneOfALinearOne) {
+  constexpr int D = TypeParam::value;
+  const auto mesh = unit_box<D>(8);
+  std::vector<Vec<D>> linear, quadratic;
+  for (const Vec<D>& x : mesh.points) {
+    linear.push_back(x[1] * Vec<D>::Unit(0));
+    quadratic.push_back(x[1] * x[1] * (3 * Vec<D>::Unit(0) + 4 * Vec<D>::Unit(1)));
+  }
+  for (const Mat<D>& t : curvature_tensors<D>(mesh, linear)) EXPECT_LT(t.norm(), 1e-6);
+  const auto found = curvature_tensors<D>(mesh, quadratic);
+  // Means of gradients are exact where all neighbors lie inside, too.
+  std::size_t checked = 0;
+  for (std::size_t n = 1; n < mesh.points.size(); ++n) {
+    if ((mesh.points[n] - Vec<D>::Constant(0.5)).cwiseAbs().maxCoeff() > 0.3) continue;
+    EXPECT_LT((found[n] - 10 * Vec<D>::Unit(1) * Vec<D>::Unit(1).transpose()).norm(), 1e-6);
+    ++checked;
+  }
+  EXPECT_GT(checked, 20u);
+  // Of a linear field (5.7) is all there is; scaling the field changes nothing.
+  const auto combined = combined_tensors<D>(mesh, linear);
+  for (std::size_t n = 1; n < combined.size(); ++n) EXPECT_NEAR(combined[n](1, 1), 1, 1e-3);
+  std::vector<Vec<D>> larger = quadratic;
+  for (Vec<D>& v : larger) v *= 1000;
+  const auto one = combined_tensors<D>(mesh, quadratic), other = combined_tensors<D>(mesh, larger);
+  for (std::size_t n = 1; n < one.size(); ++n) EXPECT_LT((one[n] - other[n]).norm(), 1e-6);
+}
+
 TYPED_TEST(FlowCorrection, TensorsOfLinearFieldsAreTheirs) {
   constexpr int D = TypeParam::value;
   const auto mesh = unit_box<D>(2);

@@ -50,6 +50,35 @@ TEST(ForecastStudy, EachBodyHasItsOwn) {
   EXPECT_GT(b.natural.nodes, a.natural.nodes);
 }
 
+TEST(ForecastStudy, RoundsOfTheFlowCountWithTheirBudget) {
+  Study study;
+  study.bodies = {{"a", 2}, {"b", 2}};
+  study.groups = {{"gate", GroupKind::gate}, {"vent", GroupKind::vent}};
+  study.groups[0].floods = {{{0, 4, 0.5}, 0.3}};
+  study.groups[1].floods = {{{8, 4, 0.5}, 0.3}};
+  for (BoundaryGroup& group : study.groups) group.body = "a";
+  study.flow.emplace();
+  study.flow->rounds = 2;
+  study.flow->growth = 1.5;
+  const MeshForecast mesh{6000, 1000, 1.3};
+  const auto flow = forecast_flow(study, "a", mesh);
+  ASSERT_TRUE(flow.has_value());
+  EXPECT_EQ(flow->solves, 3);
+  EXPECT_DOUBLE_EQ(flow->mesh.nodes, 1500);
+  EXPECT_DOUBLE_EQ(flow->mesh.elements, 9000);
+  EXPECT_GT(flow->mesh.memory, 1.5 * mesh.memory);  // the solver needs more than the adaption
+  EXPECT_FALSE(forecast_flow(study, "b", mesh).has_value());  // it has no gate
+  study.flow->rounds = 0;
+  EXPECT_EQ(forecast_flow(study, "a", mesh)->solves, 1);
+  EXPECT_DOUBLE_EQ(forecast_flow(study, "a", mesh)->mesh.nodes, 1000);
+
+  const auto bodies = forecast_study(study, {plate("a"), plate("b")}, meshers());
+  ASSERT_TRUE(bodies.ok()) << bodies.error().message;
+  ASSERT_TRUE(bodies->at(0).flow.has_value());
+  EXPECT_DOUBLE_EQ(bodies->at(0).flow->mesh.nodes, bodies->at(0).mesh.corrected.nodes);
+  EXPECT_FALSE(bodies->at(1).flow.has_value());
+}
+
 TEST(ForecastStudy, RefusesWhatRunRefuses) {
   Study study;
   EXPECT_EQ(forecast_study(study, {}, meshers()).error().code, Code::usage);
