@@ -37,6 +37,7 @@ struct Assembly {
   double chord_tolerance = 0;               ///< mm, of the mesh to the bodies' exact shape
   double mesh_tolerance = 0;                ///< what the tessellations have left of it for the mesh
   std::vector<BodyOutcome> outcomes;        ///< [region], with overlaps and gaps in the notes
+  StudyOverlaps overlaps;
 };
 
 /// Facets on the CAD faces from number `first_face` on, which are those of a grouped surface, get
