@@ -1,5 +1,3 @@
-#include <tbb/global_control.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +6,9 @@
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
+#include "app/cli_metric_field.h"
+#include "app/services.h"
+#include "core/io/facet_sides.h"
 #include "core/mesh/interfaces.h"
 #include "core/mesh/quality.h"
 #include "core/metric/analytic.h"
@@ -132,10 +133,13 @@ class AskedMetric {
       : command_(command), console_(console), conditions_(conditions_of(command)) {}
 
   /// Reads or parses it; a nodal metric is conditioned here, once, on the mesh it came with.
-  Result<void> start(const SimplexMesh<D>& mesh, const Progress& progress) {
-    Result<MetricField<D>> metric = metric_of<D>(mesh, command_.sol, command_.metric, &analytic_);
-    if (!metric) return metric.error();
-    nodal_ = std::move(*metric);
+  Result<void> start(const SimplexMesh<D>& mesh, MetricField<D>&& given, const Progress& progress) {
+    nodal_ = std::move(given);
+    if (nodal_.empty()) {
+      Result<MetricField<D>> metric = metric_of<D>(mesh, command_.sol, command_.metric, &analytic_);
+      if (!metric) return metric.error();
+      nodal_ = std::move(*metric);
+    }
     if (analytic_) return {};
     if (conditions_.any()) {
       Result<Conditioned<D>> r = condition_metric<D>(mesh, nodal_, conditions_, progress);
@@ -253,6 +257,15 @@ Result<void> tell_boundary(const SimplexMesh<3>& before, const SimplexMesh<3>& a
   return {};
 }
 
+/// Other programs need not list the boundary: what is missing becomes the group "unnamed".
+void tell_boundary_listed(SimplexMesh<3>& mesh, Console& console) {
+  const std::size_t before = mesh.facets.size();
+  list_boundary(mesh);
+  if (mesh.facets.size() > before)
+    console.say(grouped(mesh.facets.size() - before) +
+                " boundary faces are in no group of the file: they are \"unnamed\"");
+}
+
 /// Whether the .sol that goes with a .mesh written is the one read, for another mesh.
 bool overwrites_metric(const AdaptCommand& c) {
   const auto same = [](const fs::path& a, const fs::path& b) {
@@ -301,7 +314,8 @@ class FirstBoundary {
 };
 
 template <int D>
-int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& console) {
+int adapt_mesh(const SimplexMesh<D>& mesh, MetricField<D>&& given, const AdaptCommand& c,
+               Console& console) {
   const Progress progress = console.progress();
   if (Result<void> known = check_output_name(c.output, D); !known)
     return console.fail(known.error());
@@ -313,7 +327,7 @@ int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& conso
   Result<AdaptParams> params = params_of<D>(c, mesh);
   if (!params) return console.fail(params.error());
   AskedMetric<D> asked(c, console);
-  if (Result<void> done = asked.start(mesh, progress.portion(0, 0)); !done)
+  if (Result<void> done = asked.start(mesh, std::move(given), progress.portion(0, 0)); !done)
     return console.fail(done.error());
 
   Adapted<D> current{mesh, asked.nodal(), {}};
@@ -371,14 +385,22 @@ int adapt_mesh(const SimplexMesh<D>& mesh, const AdaptCommand& c, Console& conso
 }  // namespace
 
 int run_adapt(const AdaptCommand& c, Console& console) {
-  std::optional<tbb::global_control> limit;
-  if (c.threads && *c.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism,
-                  static_cast<std::size_t>(*c.threads));
+  if (c.sol.empty() && c.metric.empty()) {
+    Result<MeshContent> content = read_content(c.mesh, console.progress().portion(0, 0));
+    if (!content) return console.fail(of_input(content.error()));
+    Result<MetricField<3>> metric = metric_in_file(*content, c.field);
+    if (!metric) return console.fail(metric.error());
+    tell_boundary_listed(content->mesh, console);
+    return adapt_mesh<3>(content->mesh, std::move(*metric), c, console);
+  }
   Result<AnyMesh> mesh = read_any(c.mesh, nullptr, console.progress().portion(0, 0));
   if (!mesh) return console.fail(of_input(mesh.error()));
-  return std::visit([&]<int D>(const SimplexMesh<D>& m) { return adapt_mesh<D>(m, c, console); },
-                    *mesh);
+  if (auto* solid = std::get_if<SimplexMesh<3>>(&*mesh)) tell_boundary_listed(*solid, console);
+  return std::visit(
+      [&]<int D>(const SimplexMesh<D>& m) {
+        return adapt_mesh<D>(m, MetricField<D>{}, c, console);
+      },
+      *mesh);
 }
 
 }  // namespace lamella::cli

@@ -1,4 +1,7 @@
+#include <tbb/global_control.h>
+
 #include <exception>
+#include <optional>
 #include <string>
 
 #include "app/cli_commands.h"
@@ -48,6 +51,20 @@ int main(int argc, char** argv) {
             return false;
         },
         *command);
+    const int threads = std::visit(
+        [](const auto& c) {
+          if constexpr (requires { c.threads.value_or(0); })
+            return c.threads.value_or(0);
+          else if constexpr (requires { c.threads; })
+            return c.threads;
+          else
+            return 0;
+        },
+        *command);
+    std::optional<tbb::global_control> limit;
+    if (threads > 0)
+      limit.emplace(tbb::global_control::max_allowed_parallelism,
+                    static_cast<std::size_t>(threads));
     Console console(json, interrupt.token());
     return std::visit(
         Overloaded{

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "app/cli_completion.h"
+#include "app/cli_manual.h"
 #include "app/cli_run_options.h"
 #include "core/base/version.h"
 #include "core/cad/sample_parts.h"
@@ -93,6 +94,13 @@ void add_chord(CLI::App* app, Value& value) {
       ->check(CLI::PositiveNumber);
 }
 
+template <class Value>
+void add_threads(CLI::App* app, Value& threads) {
+  app->add_option("--threads", threads, "Threads; the result does not depend on it [all cores]")
+      ->option_text("N")
+      ->check(CLI::Range(0, 4096));
+}
+
 void add_json(CLI::App* app, bool& json) {
   app->add_flag("--json", json, "One JSON object a line on standard output");
 }
@@ -138,10 +146,16 @@ void add_adapt(CLI::App* a, AdaptCommand& adapt) {
                     "Analytic metric NAME or NAME:key=value,..: " + joined(metric_names()))
           ->option_text("NAME");
   sol->excludes(metric);
+  a->add_option("--field", adapt.field,
+                "Field of MESH (.vtu, .msh) to adapt to: tensors are a metric, numbers a size in "
+                "mm, at nodes or in elements [its metric, or its only tensors]")
+      ->option_text("NAME")
+      ->excludes(metric)
+      ->excludes(sol);
   a->add_flag("--background,!--no-background", adapt.background,
-              "Keep the metric of --sol on the first mesh and look it up there, or carry it from "
+              "Keep the metric of a file on the first mesh and look it up there, or carry it from "
               "node to node, which blurs it [--background]")
-      ->needs(sol);
+      ->excludes(metric);
   const auto means = CLI::IsMember({"m", "root", "size", "log", "h"});
   a->add_option(
        "--mean", adapt.mean,
@@ -174,9 +188,7 @@ void add_adapt(CLI::App* a, AdaptCommand& adapt) {
       ->option_text("N")
       ->check(CLI::Range(1, 1000));
   add_chord(a, adapt.chord_tolerance);
-  a->add_option("--threads", adapt.threads, "Threads; the mesh does not depend on it [all cores]")
-      ->option_text("N")
-      ->check(CLI::Range(0, 4096));
+  add_threads(a, adapt.threads);
   a->add_option("--memory", adapt.memory,
                 "Memory the adaption may take, MB; status 6 when more is needed [no limit]")
       ->option_text("MB")
@@ -254,9 +266,7 @@ void add_flow(CLI::App* f, FlowCommand& flow) {
                   ->option_text("FILE")
                   ->needs(correct);
   correct->needs(out);
-  f->add_option("--threads", flow.threads, "Threads; the result does not depend on it [all cores]")
-      ->option_text("N")
-      ->check(CLI::Range(0, 4096));
+  add_threads(f, flow.threads);
   add_json(f, flow.json);
 }
 
@@ -280,53 +290,6 @@ void add_sizing(CLI::App* m, MeshCommand& mesh) {
   m->add_flag("--size-keep-directions", mesh.size_keep_directions,
               "Scale the natural metric there, its smallest size to SIZE, instead of making it "
               "isotropic");
-}
-
-void add_case(CLI::App* e, CaseCommand& made) {
-  const std::vector<std::string> names = {"polycrystal", "inclusions", "fibers", "two-balls",
-                                          "tilted-plate"};
-  e->add_option("NAME", made.name, joined(names))
-      ->option_text(" ")
-      ->required()
-      ->check(CLI::IsMember(names));
-  e->add_option("-o,--output", made.output, "Study to write, or its folder [NAME.json]")
-      ->option_text("FILE");
-  e->add_option("-n,--layers", made.layers, "Elements through the thickness of each zone [4]")
-      ->option_text("N")
-      ->check(CLI::Range(1, 1000));
-  e->add_option("--seed", made.seed, "Another seed gives another microstructure [1]")
-      ->option_text("N");
-  const auto number = [e](const char* name, auto& value, const char* text, const char* what) {
-    return e->add_option(name, value, what)->option_text(text);
-  };
-  number("--grains", made.grains, "N", "Polycrystal: grains [50]")->check(CLI::Range(1, 100000));
-  number("--relaxations", made.relaxations, "N",
-         "Polycrystal: steps towards grains of equal size (Lloyd) [0]")
-      ->check(CLI::Range(0, 1000));
-  number("--count", made.count, "N", "Inclusions, fibers: their number, instead of a fraction")
-      ->check(CLI::Range(1, 1000000));
-  number("--fraction", made.fraction, "X",
-         "Inclusions, fibers: their share of the volume [0.1, fibers 0.03]")
-      ->check(CLI::Range(0.0, 1.0))
-      ->excludes("--count");
-  number("--radius", made.radius, "X,..",
-         "Inclusions: radius, or the least and the largest, mm [1]; fibers: radius [0.2]")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
-  number("--gap", made.gap, "X",
-         "Inclusions, fibers: least distance to each other and to the walls, mm [0.1]")
-      ->check(CLI::NonNegativeNumber);
-  number("--length", made.length, "X", "Fibers: length, mm [3]")->check(CLI::PositiveNumber);
-  number("--orientation", made.orientation, "A,B,C",
-         "Fibers: diagonal of the orientation tensor, sum 1 [alike in all directions]")
-      ->delimiter(',')
-      ->check(CLI::Range(0.0, 1.0));
-  number("--size", made.size, "X,Y,Z",
-         "Inclusions, fibers: edges of the domain, mm [10,10,10]; polycrystal: a box instead of a "
-         "cylinder of radius 5 and length 10")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
-  number("--angle", made.angle, "X", "Tilted plate: angle of its normal to the x axis [0.61]");
 }
 
 void add_export(CLI::App* x, ExportCommand& exported) {
@@ -465,6 +428,9 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
 
   MeshCommand mesh;
   CLI::App* m = app.add_subcommand("mesh", "Mesh parts with n layers through their walls");
+  m->footer(
+      "Ctrl-C writes the best mesh so far and ends with status 130. Sizes of --size-* are never "
+      "coarser than the natural metric; a study can ask for more.");
   m->add_option("PART", mesh.inputs, "STEP or STL files, or one study (.lamella or .json)")
       ->option_text("...")
       ->required();
@@ -516,9 +482,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   m->add_option("--iterations", mesh.iterations, "Adaptions at most [6]")
       ->option_text("N")
       ->check(CLI::Range(1, 1000));
-  m->add_option("--threads", mesh.threads, "Threads; the mesh does not depend on it [all cores]")
-      ->option_text("N")
-      ->check(CLI::Range(0, 4096));
+  add_threads(m, mesh.threads);
   m->add_option("--seed", mesh.seed, "Another seed gives another, equally good mesh [1]")
       ->option_text("N");
   m->add_option("--min-quality", mesh.min_quality, "End with status 5 when an element is worse")
@@ -544,10 +508,15 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
 
   RunCommand run;
   CLI::App* r = app.add_subcommand("run", "Run a study as the window does, or a sweep of settings");
+  r->footer(
+      "The mesh is the one that the window makes of it, byte for byte. Without -o the mesh and its "
+      "report go into the project; a study as text gets one beside it. Of a sweep the last --set "
+      "changes fastest, and a mesh that fails does not keep the others from being made.");
   add_run(r, run);
 
   AdaptCommand adapt;
   CLI::App* a = app.add_subcommand("adapt", "Adapt a mesh to a metric, in 2D, 3D or 4D");
+  a->footer("Ctrl-C writes the mesh as far as it got and ends with status 130.");
   add_adapt(a, adapt);
 
   GenerateCommand generate;
@@ -561,12 +530,18 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   add_repair(g, generate.repair, generate.wrap_spacing);
   add_cad(g, generate.cad);
   add_mesher(g, generate.mesher);
+  add_threads(g, generate.threads);
   g->add_option("--seed", generate.seed, "Another seed gives another, equally good mesh [1]")
       ->option_text("N");
   add_json(g, generate.json);
 
   ExportCommand exported;
   CLI::App* x = app.add_subcommand("export", "Write a mesh in another format");
+  x->footer(
+      "The file is read again and compared. What the format has no place for goes into OUT.json "
+      "and "
+      "OUT.sol beside it, which belong to the mesh when it is read. Of openfoam, OUT is the folder "
+      "of the case, or a .foam in it.");
   add_export(x, exported);
 
   CheckCommand check;
@@ -585,16 +560,21 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   c->add_option("--min-quality", check.min_quality, "End with status 5 when an element is worse")
       ->option_text("X")
       ->check(CLI::Range(0.0, 1.0));
+  add_threads(c, check.threads);
   add_json(c, check.json);
 
   InfoCommand info;
   CLI::App* i = app.add_subcommand("info", "Bodies, size and volume of a part");
+  i->footer(
+      "The file is diagnosed as it is: open, non-manifold and wrongly wound edges, duplicate and "
+      "degenerate facets, facets that cross, thin walls, shells and free faces, with places.");
   i->add_option("PART", info.part, "STEP or STL file")->option_text(" ")->required();
   add_chord(i, info.chord_tolerance);
   i->add_flag("--faces", info.faces, "List the faces: number, name, area and a point on them");
   add_unit(i, info.unit);
   add_repair(i, info.repair, info.wrap_spacing);
   add_cad(i, info.cad);
+  add_threads(i, info.threads);
   add_json(i, info.json);
 
   SampleCommand sample;
@@ -659,6 +639,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->option_text(" ")
       ->required()
       ->check(CLI::IsMember({"bash"}));
+  CLI::App* u = app.add_subcommand("manual", "Print the manual page of these commands (man -l)");
 
   app.footer(kFooter);  // after the subcommands, which would repeat it
   try {
@@ -679,15 +660,12 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
     std::cout << bash_completion(app);
     return std::nullopt;
   }
-  if (r->parsed()) return run;
-  if (a->parsed()) {
-    if (adapt.sol.empty() && adapt.metric.empty()) {
-      std::cerr << "lamella-cli: adapt needs --sol or --metric.\n";
-      status = exit_code(Code::usage);
-      return std::nullopt;
-    }
-    return adapt;
+  if (u->parsed()) {
+    std::cout << manual_page(app);
+    return std::nullopt;
   }
+  if (r->parsed()) return run;
+  if (a->parsed()) return adapt;
   if (g->parsed()) return generate;
   if (x->parsed()) return exported;
   if (c->parsed()) return check;

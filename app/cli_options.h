@@ -64,7 +64,7 @@ struct RunCommand {
 };
 
 struct AdaptCommand {
-  std::string mesh, output, sol, metric;
+  std::string mesh, output, sol, metric, field;
   bool background = true;
   std::string mean = "size", element_mean = "m", size_average = "l2";
   std::optional<double> h_min, h_max, max_anisotropy, gradation, elements;
@@ -87,6 +87,7 @@ struct GenerateCommand {
   CadOptions cad;
   std::string mesher = "auto";
   std::optional<double> chord_tolerance;
+  std::optional<int> threads;
   std::uint64_t seed = 1;
   bool json = false;
 };
@@ -99,7 +100,7 @@ struct ExportCommand {
 
 struct CheckCommand {
   std::string mesh, sol, metric;
-  std::optional<int> layers;
+  std::optional<int> layers, threads;
   std::optional<double> min_quality;
   bool json = false;
 };
@@ -112,6 +113,7 @@ struct InfoCommand {
   CadOptions cad;
   std::optional<double> chord_tolerance;
   bool faces = false;
+  std::optional<int> threads;
   bool json = false;
 };
 

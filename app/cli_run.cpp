@@ -205,8 +205,8 @@ class StudyRun {
     for (const std::string& output : job.outputs) {
       if (!fs::exists(output, ec)) return {};
       if (!is_project(output)) continue;
-      const Result<Project> project = open_project(output);
-      if (!project || project->mesh.empty()) return {};
+      const Result<Project> project = open_project_head(output);
+      if (!project || !project->mesh_study) return {};
       if (mesh_key(*project->mesh_study) != mesh_key(job.study)) return {};
       report = project->report_json;
     }

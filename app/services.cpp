@@ -108,20 +108,6 @@ Result<ExportCertificate> write(const fs::path& file, const SimplexMesh<3>& mesh
   return write_mesh_file(format, mesh, fields, target, options.unit, progress);
 }
 
-Result<MeshContent> read_content(const fs::path& file, const Progress& progress) {
-  std::error_code ec;
-  fs::path source = file;
-  if (fs::is_directory(file / "constant" / "polyMesh", ec))
-    source = file / (fs::weakly_canonical(file, ec).filename().string() + ".foam");
-  const Result<const MeshFormat*> format = mesh_formats().of_file(source);
-  if (!format) {
-    Error error = format.error();
-    error.code = Code::bad_input;
-    return error;
-  }
-  return read_mesh_file(**format, source, progress);
-}
-
 }  // namespace
 
 Result<std::vector<Part>> load_all(const std::vector<fs::path>& files, const Study& study,
@@ -201,6 +187,20 @@ Result<ExportCertificate> export_mesh(const fs::path& file, const MeshState& sta
   if (state.flow) add_flow(*state.flow, fields);
   fields.provenance = provenance_json(study, state.mesh, inputs);
   return write(file, state.mesh, fields, options, progress);
+}
+
+Result<MeshContent> read_content(const fs::path& file, const Progress& progress) {
+  std::error_code ec;
+  fs::path source = file;
+  if (fs::is_directory(file / "constant" / "polyMesh", ec))
+    source = file / (fs::weakly_canonical(file, ec).filename().string() + ".foam");
+  const Result<const MeshFormat*> format = mesh_formats().of_file(source);
+  if (!format) {
+    Error error = format.error();
+    error.code = Code::bad_input;
+    return error;
+  }
+  return read_mesh_file(**format, source, progress);
 }
 
 Result<ExportCertificate> convert_mesh(const fs::path& from, const fs::path& to,

@@ -37,12 +37,6 @@ std::vector<std::shared_ptr<const VolumeMesher>> meshers_for(MesherChoice choice
 /// All formats of this build, those whose library is missing with their reason.
 const MeshFormats& mesh_formats();
 
-/// How a file is to be written.
-struct ExportOptions {
-  std::string format{};  ///< by its name; empty: by the ending of the file
-  LengthUnit unit = LengthUnit::mm;
-};
-
 /// Error: usage when the file's ending (or the format asked) names none, or the folder is missing.
 Result<void> check_export_name(const std::filesystem::path& file,
                                const ExportOptions& options = {});
@@ -61,6 +55,9 @@ Result<ExportCertificate> convert_mesh(const std::filesystem::path& from,
                                        const std::filesystem::path& to,
                                        const ExportOptions& options = {},
                                        const Progress& progress = {});
+
+/// A mesh file with all that it holds. Errors: io, bad_input.
+Result<MeshContent> read_content(const std::filesystem::path& file, const Progress& progress = {});
 
 /// A mesh of tetrahedra with the fields its file has; the others are empty. Errors: io, bad_input.
 Result<MeshState> read_mesh(const std::filesystem::path& file, const Progress& progress = {});

@@ -71,7 +71,7 @@ std::vector<FacetSide> facet_sides(const SimplexMesh<3>& mesh) {
   return sides;
 }
 
-void list_boundary(SimplexMesh<3>& mesh) {
+bool boundary_is_listed(const SimplexMesh<3>& mesh) {
   // Faces within the mesh cancel out: the sum over all elements is the sum over the boundary.
   std::uint64_t sum = 0;
   for (const auto& element : mesh.elements)
@@ -80,7 +80,11 @@ void list_boundary(SimplexMesh<3>& mesh) {
   for (std::size_t f = 0; f < sides.size(); ++f)
     if (sides[f].element >= 0 && sides[f].other < 0)
       sum -= mark(opposite_facet<3>(mesh.elements[sides[f].element], sides[f].local));
-  if (sum == 0) return;
+  return sum == 0;
+}
+
+void list_boundary(SimplexMesh<3>& mesh) {
+  if (boundary_is_listed(mesh)) return;
   std::vector<Facet> known;
   for (const Facet& f : mesh.facets) known.push_back(sorted(f));
   std::sort(known.begin(), known.end());

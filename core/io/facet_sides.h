@@ -16,6 +16,9 @@ struct FacetSide {
 /// [facet]; a facet of the boundary that is listed inward belongs to its element all the same.
 std::vector<FacetSide> facet_sides(const SimplexMesh<3>& mesh);
 
+/// Whether every face of the boundary is among the facets.
+bool boundary_is_listed(const SimplexMesh<3>& mesh);
+
 /// Lists the faces of the boundary that are not, outward, in a group "unnamed" of their own.
 void list_boundary(SimplexMesh<3>& mesh);
 

@@ -30,6 +30,13 @@ struct NodeField {
   std::vector<double> values;  ///< [node * components + component], the virtual node too
 };
 
+/// Symmetric matrices of a file that are not called its metric, as other programs write them.
+struct TensorField {
+  std::string name;
+  bool of_nodes = true;
+  std::vector<Metric<3>> values;  ///< [node], the virtual one too, or [element]
+};
+
 /// Fields to be written beside a mesh of tetrahedra; a null pointer is left out. Borrowed, never
 /// owned. Node fields are indexed by NodeId, entry 0 is the virtual node.
 struct MeshFields {
@@ -52,6 +59,7 @@ struct MeshContent {
   std::vector<double> quality;            ///< [element]
   std::vector<ElementField> of_elements;  ///< further numbers of elements
   std::vector<NodeField> of_nodes;        ///< further numbers and vectors at the nodes
+  std::vector<TensorField> tensors;       ///< of VTU and MSH
   LengthUnit unit = LengthUnit::mm;       ///< of all the above, where the file tells it
   std::string provenance;                 ///< JSON object, as it was written
 };

@@ -1,6 +1,7 @@
 #include "core/io/mesh_file.h"
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -20,18 +21,35 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kSame = 1e-9;
 
-/// A mesh and its fields, which it owns.
-struct Owned {
-  SimplexMesh<3> mesh;
-  MetricField<3> metric;
-  std::vector<double> thickness, layers;
-  MeshFields fields;  ///< points to the above, once `point` was called
+/// A mesh and its fields: those of someone else, or a copy that differs.
+struct Carried {
+  const SimplexMesh<3>* mesh = nullptr;
+  MeshFields fields;
 
-  void point() {
-    if (fields.metric) fields.metric = &metric;
-    if (fields.thickness) fields.thickness = &thickness;
-    if (fields.layers) fields.layers = &layers;
+  /// The copy, for changes; meshes are large, so there is none until it is asked for.
+  struct Copy {
+    SimplexMesh<3> mesh;
+    MetricField<3> metric;
+    std::vector<double> thickness, layers;
+  };
+  Copy& copy() {
+    if (own_) return *own_;
+    own_ = std::make_unique<Copy>();
+    own_->mesh = *mesh;
+    mesh = &own_->mesh;
+    const auto take = [](const auto*& field, auto& own) {
+      if (!field) return;
+      own = *field;
+      field = &own;
+    };
+    take(fields.metric, own_->metric);
+    take(fields.thickness, own_->thickness);
+    take(fields.layers, own_->layers);
+    return *own_;
   }
+
+ private:
+  std::unique_ptr<Copy> own_;
 };
 
 void scale(double factor, std::vector<Vec<3>>& points, MetricField<3>& metric,
@@ -46,52 +64,67 @@ std::optional<std::string> body_of(const ElementField& field) {
   return field.name.substr(kFillingField.size());
 }
 
+bool has_unused_nodes(const SimplexMesh<3>& mesh) {
+  std::vector<bool> used(mesh.points.size(), false);
+  for (const auto& element : mesh.elements)
+    for (const NodeId v : element) used[v] = true;
+  return std::find(used.begin() + 1, used.end(), false) != used.end();
+}
+
 /// What must read back, in mm and by its own names: all of the boundary, no unused nodes where the
 /// format wants none, no faces between bodies where it has no place for them.
-Owned what_is_carried(const MeshFormat& format, const SimplexMesh<3>& mesh,
-                      const MeshFields& fields) {
-  Owned out{mesh, {}, {}, {}, fields};
-  if (fields.metric) out.metric = *fields.metric;
-  if (fields.thickness) out.thickness = *fields.thickness;
-  if (fields.layers) out.layers = *fields.layers;
-  list_boundary(out.mesh);
-  if (format.compact) {
-    const std::vector<NodeId> new_id = compact_nodes<3>(out.mesh);
-    if (fields.metric) compact_field(new_id, out.metric);
-    if (fields.thickness) compact_field(new_id, out.thickness);
-    if (fields.layers) compact_field(new_id, out.layers);
+Carried what_is_carried(const MeshFormat& format, const SimplexMesh<3>& mesh,
+                        const MeshFields& fields) {
+  Carried out;
+  out.mesh = &mesh;
+  out.fields = fields;
+  if (!boundary_is_listed(mesh)) list_boundary(out.copy().mesh);
+  if (format.compact && has_unused_nodes(mesh)) {
+    Carried::Copy& own = out.copy();
+    const std::vector<NodeId> new_id = compact_nodes<3>(own.mesh);
+    if (fields.metric) compact_field(new_id, own.metric);
+    if (fields.thickness) compact_field(new_id, own.thickness);
+    if (fields.layers) compact_field(new_id, own.layers);
   }
   if (!format.groups && !format.boundary_only) {
-    const std::vector<FacetSide> sides = facet_sides(out.mesh);
+    SimplexMesh<3>& own = out.copy().mesh;
+    const std::vector<FacetSide> sides = facet_sides(own);
     std::size_t kept = 0;
     for (std::size_t f = 0; f < sides.size(); ++f) {
       if (sides[f].element < 0 || sides[f].other >= 0) continue;
-      out.mesh.facets[kept] = out.mesh.facets[f];
-      out.mesh.facet_group[kept] = out.mesh.facet_group[f];
-      out.mesh.facet_face[kept++] = out.mesh.facet_face[f];
+      own.facets[kept] = own.facets[f];
+      own.facet_group[kept] = own.facet_group[f];
+      own.facet_face[kept++] = own.facet_face[f];
     }
-    out.mesh.facets.resize(kept);
-    out.mesh.facet_group.resize(kept);
-    out.mesh.facet_face.resize(kept);
+    own.facets.resize(kept);
+    own.facet_group.resize(kept);
+    own.facet_face.resize(kept);
   }
   return out;
 }
 
 /// The same with names as the format holds them and lengths in its unit.
-Owned as_in_file(const MeshFormat& format, const Owned& carried, LengthUnit unit) {
-  Owned out = carried;
-  out.point();
+Carried as_in_file(const MeshFormat& format, const Carried& carried, LengthUnit unit) {
+  Carried out;
+  out.mesh = carried.mesh;
+  out.fields = carried.fields;
   out.fields.unit = unit;
   std::vector<std::string> taken;
-  out.mesh.bodies = names_in_file(carried.mesh.bodies, format.names, taken);
+  const std::vector<std::string> bodies = names_in_file(carried.mesh->bodies, format.names, taken);
   if (!format.names.shared) taken.clear();
-  out.mesh.groups = names_in_file(carried.mesh.groups, format.names, taken);
+  const std::vector<std::string> groups = names_in_file(carried.mesh->groups, format.names, taken);
   for (ElementField& field : out.fields.of_elements)
     if (const auto body = body_of(field))
-      for (std::size_t b = 0; b < out.mesh.bodies.size(); ++b)
-        if (carried.mesh.bodies[b] == *body)
-          field.name = std::string(kFillingField) + out.mesh.bodies[b];
-  if (unit == LengthUnit::m) scale(1e-3, out.mesh.points, out.metric, out.thickness);
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        if (carried.mesh->bodies[b] == *body) field.name = std::string(kFillingField) + bodies[b];
+  if (bodies != carried.mesh->bodies || groups != carried.mesh->groups) {
+    out.copy().mesh.bodies = bodies;
+    out.copy().mesh.groups = groups;
+  }
+  if (unit == LengthUnit::m) {
+    Carried::Copy& own = out.copy();
+    scale(1e-3, own.mesh.points, own.metric, own.thickness);
+  }
   return out;
 }
 
@@ -159,7 +192,7 @@ std::string layout(const Json& json) {
   return text + "\n}\n";
 }
 
-Result<void> write_sidecar(const MeshFormat& format, const Owned& carried, const Owned& written,
+Result<void> write_sidecar(const MeshFormat& format, const Carried& carried, const Carried& written,
                            const fs::path& file) {
   const MeshFields& fields = carried.fields;
   Json json =
@@ -169,8 +202,8 @@ Result<void> write_sidecar(const MeshFormat& format, const Owned& carried, const
   json["file"] = file.filename().string();
   json["format"] = format.title;
   json["unit"] = unit_name(written.fields.unit);
-  json["nodes"] = written.mesh.node_count();
-  json["elements"] = written.mesh.element_count();
+  json["nodes"] = written.mesh->node_count();
+  json["elements"] = written.mesh->element_count();
   const auto list = [&](const char* key, const std::vector<std::string>& names,
                         const std::vector<std::string>& in_file) {
     Json entries = Json::array();
@@ -186,10 +219,10 @@ Result<void> write_sidecar(const MeshFormat& format, const Owned& carried, const
     }
     json[key] = std::move(entries);
   };
-  list("bodies", carried.mesh.bodies, written.mesh.bodies);
-  list("groups", carried.mesh.groups, written.mesh.groups);
-  if (!format.bodies) json["element_bodies"] = runs_of(carried.mesh.element_body);
-  if (!format.groups) json["facet_groups"] = runs_of(carried.mesh.facet_group);
+  list("bodies", carried.mesh->bodies, written.mesh->bodies);
+  list("groups", carried.mesh->groups, written.mesh->groups);
+  if (!format.bodies) json["element_bodies"] = runs_of(carried.mesh->element_body);
+  if (!format.groups) json["facet_groups"] = runs_of(carried.mesh->facet_group);
   if (fields.metric && !format.metric)
     json["metric"] = metric_file(format, file).filename().string();
   if (!format.filling)
@@ -337,6 +370,26 @@ std::string fault_of(const std::vector<std::array<NodeId, N>>& simplices, std::s
 
 }  // namespace
 
+void drop_unused_nodes(MeshContent& content) {
+  const std::vector<NodeId> new_id = compact_nodes<3>(content.mesh);
+  const auto move = [&](auto& field) {
+    if (!field.empty()) compact_field(new_id, field);
+  };
+  move(content.metric);
+  move(content.thickness);
+  move(content.layers);
+  for (TensorField& field : content.tensors)
+    if (field.of_nodes) move(field.values);
+  for (NodeField& field : content.of_nodes) {
+    const auto n = static_cast<std::size_t>(field.components);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < new_id.size(); ++i)
+      if (new_id[i] >= 0)
+        for (std::size_t c = 0; c < n; ++c) field.values[kept++] = field.values[n * i + c];
+    field.values.resize(kept);
+  }
+}
+
 fs::path sidecar_of(const fs::path& file) { return file.string() + ".json"; }
 
 Result<void> complete(MeshContent& content, const fs::path& file) {
@@ -382,6 +435,8 @@ Result<void> complete(MeshContent& content, const fs::path& file) {
   }
   if (content.unit == LengthUnit::m) {
     scale(1e3, content.mesh.points, content.metric, content.thickness);
+    for (TensorField& field : content.tensors)
+      for (Metric<3>& m : field.values) m /= 1e6;
     content.unit = LengthUnit::mm;
   }
   return {};
@@ -413,13 +468,11 @@ Result<ExportCertificate> write_mesh_file(const MeshFormat& format, const Simple
                                           const MeshFields& fields, const fs::path& file,
                                           LengthUnit unit, const Progress& progress) {
   if (format.meters) unit = LengthUnit::m;
-  Owned carried = what_is_carried(format, mesh, fields);
-  carried.point();
-  Owned written = as_in_file(format, carried, unit);
-  written.point();
+  const Carried carried = what_is_carried(format, mesh, fields);
+  std::optional<Carried> written = as_in_file(format, carried, unit);
   if (progress.cancelled()) return cancelled_error();
   Result<MeshFormat::Notes> notes =
-      format.write(written.mesh, written.fields, file, progress.portion(0.1, 0.6));
+      format.write(*written->mesh, written->fields, file, progress.portion(0.1, 0.6));
   if (!notes) return notes.error();
   ExportCertificate proof;
   const std::string name = file.filename().string();
@@ -427,21 +480,23 @@ Result<ExportCertificate> write_mesh_file(const MeshFormat& format, const Simple
     auto back = read_stl(file);
     if (!back) return back.error();
     std::vector<std::array<Vec<3>, 3>> triangles;
-    for (const auto& f : written.mesh.facets) triangles.push_back(written.mesh.corners(f));
+    for (const auto& f : written->mesh->facets) triangles.push_back(written->mesh->corners(f));
     // Binary STL holds single precision.
     proof = certify(name, format.title, summary_of(triangles), summary_of(*back), false, 1e-4);
   } else {
     // First what belongs beside the file: reading it again needs that.
     if (!format.provenance)
-      if (Result<void> done = write_sidecar(format, carried, written, file); !done)
+      if (Result<void> done = write_sidecar(format, carried, *written, file); !done)
         return done.error();
     if (fields.metric && !format.metric)
-      if (Result<void> done = write_sol<3>(written.metric, metric_file(format, file)); !done)
+      if (Result<void> done = write_sol<3>(*written->fields.metric, metric_file(format, file));
+          !done)
         return done.error();
+    written.reset();
     Result<MeshContent> back = read_mesh_file(format, file, progress.portion(0.6, 0.9));
     if (!back) return back.error();
-    proof = certify(name, format.title, summarize(carried.mesh), summarize(back->mesh));
-    compare_fields(carried.mesh, carried.fields, *back, proof);
+    proof = certify(name, format.title, summarize(*carried.mesh), summarize(back->mesh));
+    compare_fields(*carried.mesh, carried.fields, *back, proof);
   }
   proof.notes = std::move(*notes);
   if (!proof.agrees)

@@ -9,6 +9,10 @@ namespace lamella {
 /// files beside it: FILE.json (names, unit, provenance, filling ratios of elements that more than
 /// one body fills) and, for the metric, FILE.sol or, of a .mesh, the .sol that Medit looks for.
 
+/// Takes the nodes that no element uses out of the mesh and of its fields, such as those in the
+/// middle of edges when elements of second order were read by their corners.
+void drop_unused_nodes(MeshContent& content);
+
 /// FILE.json.
 std::filesystem::path sidecar_of(const std::filesystem::path& file);
 

@@ -61,6 +61,12 @@ struct MeshFormat {
   std::function<Result<MeshContent>(const std::filesystem::path&, const Progress&)> read;
 };
 
+/// How a file is to be written.
+struct ExportOptions {
+  std::string format{};  ///< by its name; empty: by the ending of the file
+  LengthUnit unit = LengthUnit::mm;
+};
+
 /// The formats that need no library: msh, msh22, medit, openfoam, abaqus, unv, nastran, cimlib,
 /// stl.
 std::vector<MeshFormat> own_formats();

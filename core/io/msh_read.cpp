@@ -1,16 +1,28 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <limits>
 #include <map>
 
 #include "core/base/atomic_file.h"
+#include "core/io/mesh_file.h"
 #include "core/io/msh.h"
 
 namespace lamella {
 
 namespace {
 
-constexpr int kTriangle = 2, kTetrahedron = 4;
+// Those of second order count by their corners.
+constexpr int kTriangle = 2, kTetrahedron = 4, kTriangle2 = 9, kTetrahedron2 = 11;
+
+/// What elements are called that are solid and no tetrahedra; null for all others.
+const char* solid_called(std::int32_t type) {
+  if (type == 5 || type == 12 || type == 17) return "hexahedra";
+  if (type == 6 || type == 13 || type == 18) return "prisms";
+  if (type == 7 || type == 14 || type == 19) return "pyramids";
+  if (type == 29) return "tetrahedra of third order";
+  return nullptr;
+}
 
 /// Reads numbers in text or binary; after the first failure everything reads as zero.
 class Reader {
@@ -63,6 +75,12 @@ class Reader {
   std::int32_t integer() { return number<std::int32_t>(); }
   double real() { return number<double>(); }
   std::uint64_t size() { return number<std::uint64_t>(); }
+  /// Number of a node or of an element; more than there can be in a mesh of ours is a failure.
+  std::uint32_t tag() {
+    const std::uint64_t n = size();
+    if (n > std::numeric_limits<std::uint32_t>::max()) return fail(), 0;
+    return static_cast<std::uint32_t>(n);
+  }
   /// A count of records of at least `least` bytes each in text: one that cannot fit is a failure.
   std::size_t count(std::size_t least) {
     const std::uint64_t n = size();
@@ -97,24 +115,34 @@ class Reader {
 struct Raw {
   std::map<std::pair<int, std::int32_t>, std::string> names;      // (dimension, tag)
   std::map<std::pair<int, std::int32_t>, std::int32_t> physical;  // entity -> first physical tag
-  std::vector<std::uint64_t> tags;
+  std::vector<std::uint32_t> tags;
   std::vector<Vec<3>> points;
   struct Simplices {
     int dimension = 0;
     std::int32_t entity = 0;
     std::int32_t physical = 0;  ///< of version 2.2; 0: that of the entity
-    std::vector<std::uint64_t> tags;
-    std::vector<std::uint64_t> nodes;  ///< so many for each tag
+    std::vector<std::uint32_t> tags;
+    std::vector<std::uint32_t> nodes;  ///< so many for each tag
   };
   std::vector<Simplices> blocks;
   struct Field {
     std::string name;
     bool of_nodes = true;
     int components = 1;
-    std::vector<std::uint64_t> tags;
+    std::vector<std::uint32_t> tags;
     std::vector<double> values;  ///< so many for each tag
   };
   std::vector<Field> fields;
+  bool second_order = false;
+  const char* other_solid = nullptr;  ///< a kind that cannot be used
+
+  /// Corners to take of an element; 0: it does not matter.
+  int corners_of(std::int32_t type) {
+    second_order = second_order || type == kTetrahedron2;
+    if (!other_solid) other_solid = solid_called(type);
+    if (type == kTriangle || type == kTriangle2) return 3;
+    return type == kTetrahedron || type == kTetrahedron2 ? 4 : 0;
+  }
 };
 
 /// Nodes of an element by its Gmsh type; 0: a type we do not know.
@@ -166,7 +194,7 @@ void read_nodes(Reader& r, Raw& raw) {
     r.integer();
     const bool parametric = r.integer() != 0;
     const std::size_t n = r.count(8);
-    for (std::size_t i = 0; i < n && !r.failed(); ++i) raw.tags.push_back(r.size());
+    for (std::size_t i = 0; i < n && !r.failed(); ++i) raw.tags.push_back(r.tag());
     for (std::size_t i = 0; i < n && !r.failed(); ++i) {
       Vec<3> x;
       for (int k = 0; k < 3; ++k) x[k] = r.real();
@@ -187,15 +215,16 @@ void read_elements(Reader& r, Raw& raw) {
     const std::size_t n = r.count(4);
     const int nodes = nodes_of_type(type);
     if (nodes == 0) return r.fail();
-    const bool wanted = type == kTriangle || type == kTetrahedron;
-    if (wanted) block.nodes.reserve(n * nodes);
+    const int corners = n > 0 ? raw.corners_of(type) : 0;
+    const bool wanted = corners > 0;
+    if (wanted) block.nodes.reserve(n * static_cast<std::size_t>(corners));
     if (wanted) block.tags.reserve(n);
     for (std::size_t i = 0; i < n && !r.failed(); ++i) {
-      const std::uint64_t tag = r.size();
+      const std::uint32_t tag = r.tag();
       if (wanted) block.tags.push_back(tag);
       for (int k = 0; k < nodes; ++k) {
-        const std::uint64_t v = r.size();
-        if (wanted) block.nodes.push_back(v);
+        const std::uint32_t v = r.tag();
+        if (k < corners) block.nodes.push_back(v);
       }
     }
     if (wanted) raw.blocks.push_back(std::move(block));
@@ -207,7 +236,7 @@ void read_nodes_22(Reader& r, Raw& raw) {
   raw.tags.reserve(n);
   raw.points.reserve(n);
   for (std::size_t i = 0; i < n && !r.failed(); ++i) {
-    raw.tags.push_back(r.size());
+    raw.tags.push_back(r.tag());
     Vec<3> x;
     for (int k = 0; k < 3; ++k) x[k] = r.real();
     raw.points.push_back(x);
@@ -217,7 +246,7 @@ void read_nodes_22(Reader& r, Raw& raw) {
 void read_elements_22(Reader& r, Raw& raw) {
   const std::size_t n = r.count(8);
   for (std::size_t i = 0; i < n && !r.failed(); ++i) {
-    const std::uint64_t tag = r.size();
+    const std::uint32_t tag = r.tag();
     const std::int32_t type = r.integer();
     const std::int32_t count = r.integer();
     std::int32_t tags[2] = {0, 0};
@@ -227,17 +256,19 @@ void read_elements_22(Reader& r, Raw& raw) {
     }
     const int nodes = nodes_of_type(type);
     if (nodes == 0) return r.fail();
-    if (type != kTriangle && type != kTetrahedron) {
+    const int corners = raw.corners_of(type);
+    if (corners == 0) {
       for (int k = 0; k < nodes; ++k) r.integer();
       continue;
     }
-    const int dimension = type == kTetrahedron ? 3 : 2;
+    const int dimension = corners - 1;
     if (raw.blocks.empty() || raw.blocks.back().dimension != dimension ||
         raw.blocks.back().entity != tags[1] || raw.blocks.back().physical != tags[0])
       raw.blocks.push_back({dimension, tags[1], tags[0], {}, {}});
     Raw::Simplices& block = raw.blocks.back();
     block.tags.push_back(tag);
-    for (int k = 0; k < nodes; ++k) block.nodes.push_back(r.size());
+    for (int k = 0; k < nodes; ++k)
+      if (const std::uint32_t v = r.tag(); k < corners) block.nodes.push_back(v);
   }
 }
 
@@ -256,7 +287,7 @@ void read_data(Reader& r, Raw& raw, bool of_nodes) {
   r.line();
   field.components = tags[1];
   for (std::int32_t i = 0; i < tags[2] && !r.failed(); ++i) {
-    field.tags.push_back(static_cast<std::uint64_t>(r.integer()));
+    field.tags.push_back(static_cast<std::uint32_t>(r.integer()));
     for (int c = 0; c < field.components; ++c) field.values.push_back(r.real());
   }
   raw.fields.push_back(std::move(field));
@@ -265,11 +296,11 @@ void read_data(Reader& r, Raw& raw, bool of_nodes) {
 /// Numbers 1, 2, .. for the tags of a file, in the order of the tags.
 class Numbers {
  public:
-  explicit Numbers(std::vector<std::uint64_t> tags) : tags_(std::move(tags)) {
+  explicit Numbers(std::vector<std::uint32_t> tags) : tags_(std::move(tags)) {
     std::sort(tags_.begin(), tags_.end());
   }
   /// 0: there is no such tag.
-  NodeId of(std::uint64_t tag) const {
+  NodeId of(std::uint32_t tag) const {
     if (tag > 0 && tag <= tags_.size() && tags_[tag - 1] == tag) return static_cast<NodeId>(tag);
     const auto it = std::lower_bound(tags_.begin(), tags_.end(), tag);
     if (it == tags_.end() || *it != tag) return 0;
@@ -277,7 +308,7 @@ class Numbers {
   }
 
  private:
-  std::vector<std::uint64_t> tags_;
+  std::vector<std::uint32_t> tags_;
 };
 
 /// Index of the physical `tag` among the names of its dimension; grows `names` where the file gives
@@ -289,9 +320,25 @@ std::int32_t index_of(std::map<std::int32_t, std::int32_t>& indices,
   return it->second;
 }
 
+Metric<3> matrix_of(const Raw::Field& field, std::size_t i) {
+  const Metric<3> m = Eigen::Map<const Metric<3>>(&field.values[9 * i]);
+  return (m + m.transpose()) / 2;
+}
+
 /// False when a value is of a node that is not in the file.
 bool take_nodes(const Raw::Field& field, const Numbers& numbers, MeshContent& out) {
   const bool is_metric = field.name == "metric" && field.components == 9;
+  if (field.components == 9 && !is_metric) {
+    TensorField tensor{field.name, true,
+                       std::vector<Metric<3>>(out.mesh.points.size(), Metric<3>::Identity())};
+    for (std::size_t i = 0; i < field.tags.size(); ++i) {
+      const NodeId node = numbers.of(field.tags[i]);
+      if (node == 0) return false;
+      tensor.values[node] = matrix_of(field, i);
+    }
+    out.tensors.push_back(std::move(tensor));
+    return true;
+  }
   if (!is_metric && !(field.name == "thickness" && field.components == 1)) {
     if (field.components != 1 && field.components != 3) return true;
     const auto n = static_cast<std::size_t>(field.components);
@@ -314,7 +361,7 @@ bool take_nodes(const Raw::Field& field, const Numbers& numbers, MeshContent& ou
     const NodeId node = numbers.of(field.tags[i]);
     if (node == 0) return false;
     if (is_metric)
-      out.metric[node] = Eigen::Map<const Metric<3>>(&field.values[9 * i]);
+      out.metric[node] = matrix_of(field, i);
     else
       out.thickness[node] = field.values[i];
   }
@@ -323,13 +370,22 @@ bool take_nodes(const Raw::Field& field, const Numbers& numbers, MeshContent& ou
 
 /// The same of elements. What has no value gets 0.
 bool take_elements(const Raw::Field& field, const Raw& raw, MeshContent& out) {
-  if (field.components != 1) return true;
-  std::vector<std::uint64_t> tags;
+  if (field.components != 1 && field.components != 9) return true;
+  std::vector<std::uint32_t> tags;
   for (const Raw::Simplices& block : raw.blocks)
     if (block.dimension == 3) tags.insert(tags.end(), block.tags.begin(), block.tags.end());
   const Numbers numbers(tags);
   std::vector<std::size_t> element(tags.size() + 1);
   for (std::size_t e = 0; e < tags.size(); ++e) element[numbers.of(tags[e])] = e;
+  if (field.components == 9) {
+    TensorField tensor{field.name, false,
+                       std::vector<Metric<3>>(tags.size(), Metric<3>::Identity())};
+    for (std::size_t i = 0; i < field.tags.size(); ++i)
+      if (const NodeId number = numbers.of(field.tags[i]); number > 0)
+        tensor.values[element[number]] = matrix_of(field, i);
+    out.tensors.push_back(std::move(tensor));
+    return true;
+  }
   ElementField values{field.name, std::vector<double>(tags.size(), 0)};
   for (std::size_t i = 0; i < field.tags.size(); ++i)
     if (const NodeId number = numbers.of(field.tags[i]); number > 0)
@@ -339,7 +395,7 @@ bool take_elements(const Raw::Field& field, const Raw& raw, MeshContent& out) {
 }
 
 /// False when an element uses a node that is not in the file.
-bool assemble(const Raw& raw, MeshContent& out) {
+bool assemble(Raw& raw, MeshContent& out) {
   SimplexMesh<3>& mesh = out.mesh;
   mesh.bodies.clear();
   mesh.groups.clear();
@@ -347,6 +403,7 @@ bool assemble(const Raw& raw, MeshContent& out) {
   mesh.points.resize(raw.points.size() + 1);
   for (std::size_t i = 0; i < raw.points.size(); ++i)
     mesh.points[numbers.of(raw.tags[i])] = raw.points[i];
+  raw.points = {};
 
   std::map<std::int32_t, std::int32_t> bodies, groups;
   for (const auto& [key, name] : raw.names) {
@@ -358,7 +415,12 @@ bool assemble(const Raw& raw, MeshContent& out) {
       mesh.groups.push_back(name);
     }
   }
-  for (const Raw::Simplices& block : raw.blocks) {
+  std::size_t elements = 0;
+  for (const Raw::Simplices& block : raw.blocks)
+    if (block.dimension == 3) elements += block.nodes.size() / 4;
+  mesh.elements.reserve(elements);
+  mesh.element_body.reserve(elements);
+  for (Raw::Simplices& block : raw.blocks) {
     const auto it = raw.physical.find({block.dimension, block.entity});
     const std::int32_t tag = block.physical != 0        ? block.physical
                              : it == raw.physical.end() ? block.entity
@@ -382,6 +444,7 @@ bool assemble(const Raw& raw, MeshContent& out) {
         mesh.facet_face.push_back(block.entity - 1);
       }
     }
+    block.nodes = {};
   }
   for (const Raw::Field& field : raw.fields)
     if (!(field.of_nodes ? take_nodes(field, numbers, out) : take_elements(field, raw, out)))
@@ -433,12 +496,17 @@ Result<MeshContent> read_msh(const std::filesystem::path& file) {
   if (r.failed())
     return refuse("the section $" + section + " is damaged or the file ends within it",
                   "The file may be truncated; write or copy it again.");
+  if (raw.other_solid)
+    return refuse(std::string("it holds ") + raw.other_solid,
+                  "Only tetrahedra of first and second order can be used.");
+  bytes = std::string();
   MeshContent content;
   if (!assemble(raw, content))
     return refuse("an element or a value refers to a node that is not there",
                   "The file is damaged; write it again.");
   if (content.mesh.elements.empty())
     return refuse("it holds no tetrahedra", "Only volume meshes of tetrahedra can be used.");
+  if (raw.second_order) drop_unused_nodes(content);
   return content;
 }
 

@@ -20,10 +20,12 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 
 #include "core/base/atomic_file.h"
 #include "core/base/version.h"
+#include "core/io/mesh_file.h"
 
 namespace lamella {
 
@@ -181,6 +183,25 @@ std::vector<NodeField> node_fields_of(vtkUnstructuredGrid* grid) {
   return out;
 }
 
+/// The matrix in a tuple of six components, as VTK orders them, or of all nine.
+Metric<3> matrix_of(vtkDataArray* array, vtkIdType at) {
+  Metric<3> m;
+  if (array->GetNumberOfComponents() == 9) {
+    for (int c = 0; c < 9; ++c) m(c / 3, c % 3) = array->GetComponent(at, c);
+    return (m + m.transpose()) / 2;
+  }
+  for (int c = 0; c < 6; ++c) {
+    const auto [i, j] = kTensor[c];
+    m(i, j) = m(j, i) = array->GetComponent(at, c);
+  }
+  return m;
+}
+
+bool is_tensor(vtkDataArray* array) {
+  return array && array->GetName() &&
+         (array->GetNumberOfComponents() == 6 || array->GetNumberOfComponents() == 9);
+}
+
 /// Value of a cell array of ids; 0 where there is none. `names` grows to hold every id.
 std::int32_t id_of(vtkDataArray* array, vtkIdType cell, std::vector<std::string>* names) {
   const auto id =
@@ -189,6 +210,9 @@ std::int32_t id_of(vtkDataArray* array, vtkIdType cell, std::vector<std::string>
     names->push_back("number " + std::to_string(names->size()));
   return id;
 }
+
+/// Those of second order count by their corners.
+bool is_tetrahedron(int type) { return type == VTK_TETRA || type == VTK_QUADRATIC_TETRA; }
 
 void take(vtkUnstructuredGrid* grid, MeshContent& out) {
   SimplexMesh<3>& mesh = out.mesh;
@@ -218,12 +242,12 @@ void take(vtkUnstructuredGrid* grid, MeshContent& out) {
   vtkNew<vtkIdList> nodes;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
     const int type = grid->GetCellType(c);
-    if (type != VTK_TETRA && type != VTK_TRIANGLE) continue;
+    const bool solid = is_tetrahedron(type);
+    if (!solid && type != VTK_TRIANGLE && type != VTK_QUADRATIC_TRIANGLE) continue;
     grid->GetCellPoints(c, nodes);
     std::array<NodeId, 4> v{};
-    for (vtkIdType k = 0; k < nodes->GetNumberOfIds(); ++k)
-      v[k] = static_cast<NodeId>(nodes->GetId(k)) + 1;
-    if (type == VTK_TETRA) {
+    for (vtkIdType k = 0; k < (solid ? 4 : 3); ++k) v[k] = static_cast<NodeId>(nodes->GetId(k)) + 1;
+    if (solid) {
       mesh.elements.push_back(v);
       mesh.element_body.push_back(id_of(body, c, &mesh.bodies));
       if (quality) out.quality.push_back(quality->GetComponent(c, 0));
@@ -238,15 +262,45 @@ void take(vtkUnstructuredGrid* grid, MeshContent& out) {
   out.thickness = node_scalar_of(grid, "thickness");
   out.layers = node_scalar_of(grid, "layers");
   out.of_nodes = node_fields_of(grid);
-  vtkDataArray* metric = grid->GetPointData()->GetArray("metric");
-  if (metric && metric->GetNumberOfComponents() == 6) {
-    out.metric.assign(mesh.points.size(), Metric<3>::Identity());
+  for (int a = 0; a < grid->GetPointData()->GetNumberOfArrays(); ++a) {
+    vtkDataArray* array = grid->GetPointData()->GetArray(a);
+    if (!is_tensor(array)) continue;
+    std::vector<Metric<3>> values(mesh.points.size(), Metric<3>::Identity());
     for (vtkIdType v = 0; v < grid->GetNumberOfPoints(); ++v)
-      for (int c = 0; c < 6; ++c) {
-        const auto [i, j] = kTensor[c];
-        Metric<3>& m = out.metric[static_cast<std::size_t>(v) + 1];
-        m(i, j) = m(j, i) = metric->GetComponent(v, c);
-      }
+      values[static_cast<std::size_t>(v) + 1] = matrix_of(array, v);
+    if (std::string_view(array->GetName()) == "metric")
+      out.metric = std::move(values);
+    else
+      out.tensors.push_back({array->GetName(), true, std::move(values)});
+  }
+  for (int a = 0; a < grid->GetCellData()->GetNumberOfArrays(); ++a) {
+    vtkDataArray* array = grid->GetCellData()->GetArray(a);
+    if (!is_tensor(array)) continue;
+    TensorField field{array->GetName(), false, {}};
+    for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c)
+      if (is_tetrahedron(grid->GetCellType(c))) field.values.push_back(matrix_of(array, c));
+    out.tensors.push_back(std::move(field));
+  }
+}
+
+/// What a cell is called that is a solid and no tetrahedron; null for all others.
+const char* solid_called(int type) {
+  switch (type) {
+    case VTK_VOXEL:
+    case VTK_HEXAHEDRON:
+    case VTK_QUADRATIC_HEXAHEDRON:
+    case VTK_TRIQUADRATIC_HEXAHEDRON:
+      return "hexahedra";
+    case VTK_WEDGE:
+    case VTK_QUADRATIC_WEDGE:
+      return "prisms";
+    case VTK_PYRAMID:
+    case VTK_QUADRATIC_PYRAMID:
+      return "pyramids";
+    case VTK_POLYHEDRON:
+      return "polyhedra";
+    default:
+      return nullptr;
   }
 }
 
@@ -306,15 +360,23 @@ namespace {
 
 Result<vtkSmartPointer<vtkUnstructuredGrid>> read_grid(const std::filesystem::path& file) {
   // VTK's parser takes anything it is given; what is no VTU file at all is better told before.
-  Result<std::string> bytes = read_file(file);
-  if (!bytes) return bytes.error();
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  std::error_code ec;
+  if (!stream || !std::filesystem::is_regular_file(file, ec))
+    if (const Result<std::string> whole = read_file(file); !whole) return whole.error();
+  const std::streamoff size = stream.tellg();
+  const auto piece = [&](std::streamoff at) {
+    std::string bytes(static_cast<std::size_t>(std::min<std::streamoff>(size - at, 4096)), '\0');
+    stream.seekg(at).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return bytes;
+  };
+  const std::string head = piece(0), tail = piece(std::max<std::streamoff>(0, size - 4096));
   const auto refuse = [&](const std::string& finding, const std::string& hint) {
     return Error{Code::bad_input, "\"" + file.string() + "\": " + finding + ".", hint};
   };
-  const std::string_view head = std::string_view(*bytes).substr(0, 4096);
   if (head.find("<VTKFile") == head.npos || head.find("UnstructuredGrid") == head.npos)
     return refuse("not a VTU file", "Give a VTK XML unstructured grid.");
-  if (bytes->rfind("</VTKFile>") == std::string::npos)
+  if (tail.rfind("</VTKFile>") == std::string::npos)
     return refuse("the file ends too early", "It may be truncated; write or copy it again.");
 
   vtkNew<vtkXMLUnstructuredGridReader> reader;
@@ -329,6 +391,12 @@ Result<vtkSmartPointer<vtkUnstructuredGrid>> read_grid(const std::filesystem::pa
 Error no_tetrahedra(const std::filesystem::path& file) {
   return {Code::bad_input, "\"" + file.string() + "\": it holds no tetrahedra.",
           "Only volume meshes of tetrahedra can be used."};
+}
+
+bool is_second_order(vtkUnstructuredGrid* grid) {
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c)
+    if (grid->GetCellType(c) == VTK_QUADRATIC_TETRA) return true;
+  return false;
 }
 
 /// Arrays of the cells of a grid of tetrahedra at its points, behind those in `fields`.
@@ -368,8 +436,13 @@ Result<MeshContent> read_vtu(const std::filesystem::path& file) {
   const Quiet quiet;
   const auto grid = read_grid(file);
   if (!grid) return grid.error();
+  for (vtkIdType c = 0; c < (*grid)->GetNumberOfCells(); ++c)
+    if (const char* solid = solid_called((*grid)->GetCellType(c)))
+      return Error{Code::bad_input, "\"" + file.string() + "\": it holds " + solid + ".",
+                   "Only tetrahedra of first and second order can be used."};
   MeshContent content;
   take(*grid, content);
+  if (is_second_order(*grid)) drop_unused_nodes(content);
   if (content.mesh.elements.empty()) return no_tetrahedra(file);
   return content;
 }

@@ -79,6 +79,17 @@ class Opening {
  public:
   Opening(const fs::path& file, const fs::path& also) : file_(file), also_(also) {}
 
+  Result<Project> open_head() {
+    Result<bool> text = is_text();
+    if (!text) return text.error();
+    Result<void> read = *text ? read_text() : read_zip_head();
+    if (!read) return read.error();
+    if (!*text && archive_->find(kMesh) && !project_.mesh_study)
+      project_.mesh_study = project_.study;
+    project_.mesh.clear();
+    return std::move(project_);
+  }
+
   Result<Project> open(const Progress& progress) {
     Result<bool> text = is_text();
     if (!text) return text.error();
@@ -127,6 +138,16 @@ class Opening {
   }
 
   Result<void> read_zip(const Progress& progress) {
+    if (Result<void> read = read_zip_head(); !read) return read;
+    const ArchiveEntry* mesh = archive_->find(kMesh);
+    if (!mesh) return {};
+    Result<fs::path> to = unpack(*archive_, *mesh, "mesh", kMesh, progress);
+    if (!to) return to.error();
+    project_.mesh = std::move(*to);
+    return {};
+  }
+
+  Result<void> read_zip_head() {
     Result<Archive> archive = Archive::open(file_);
     if (!archive) return archive.error();
     archive_ = std::make_unique<const Archive>(std::move(*archive));
@@ -148,8 +169,7 @@ class Opening {
       if (!report) return report.error();
       *value = std::move(*report);
     }
-    const ArchiveEntry* mesh = archive_->find(kMesh);
-    if (!mesh) return {};
+    if (!archive_->find(kMesh)) return {};
     Result<std::string> made_of = read_entry(kMeshStudy);
     if (!made_of) return made_of.error();
     if (!made_of->empty()) {
@@ -157,9 +177,6 @@ class Opening {
       if (!mesh_study) return mesh_study.error();
       project_.mesh_study = std::move(*mesh_study);
     }
-    Result<fs::path> to = unpack(*archive_, *mesh, "mesh", kMesh, progress);
-    if (!to) return to.error();
-    project_.mesh = std::move(*to);
     return {};
   }
 
@@ -318,6 +335,8 @@ bool names_study(const fs::path& file) { return is_project(file) || ending_of(fi
 Result<Project> open_project(const fs::path& file, const Progress& progress, const fs::path& also) {
   return Opening(file, also).open(progress);
 }
+
+Result<Project> open_project_head(const fs::path& file) { return Opening(file, {}).open_head(); }
 
 Result<std::vector<std::string>> save_project(const ProjectContent& content, const fs::path& file,
                                               const Progress& progress) {

@@ -54,6 +54,10 @@ bool names_study(const std::filesystem::path& file);
 Result<Project> open_project(const std::filesystem::path& file, const Progress& progress = {},
                              const std::filesystem::path& also = {});
 
+/// What a project says of itself and of its mesh, which stays packed: neither inputs nor mesh are
+/// looked at, and `mesh_study` is set where there is a mesh. Errors: io, bad_input.
+Result<Project> open_project_head(const std::filesystem::path& file);
+
 /// Saves a project, or with the ending .json the study alone. It is written beside the target and
 /// read again in full; only then it takes the target's place, and what was there before becomes
 /// FILE.bak. Returns notes for the user. Errors: io, cancelled, those of the mesh's writer; the

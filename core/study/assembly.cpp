@@ -125,6 +125,7 @@ class AssemblyLoop {
     return false;
   }
   bool failed() const { return failed_; }
+  const StudyOverlaps& overlaps() const { return of_.overlaps; }
   bool converged() const {
     return settled_ && !failed_ &&
            std::all_of(of_.outcomes.begin(), of_.outcomes.end(), [&](const BodyOutcome& b) {
@@ -588,6 +589,7 @@ Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
     closed = loop.finish(Progress{});
   }
   outcome.bodies = std::move(*closed);
+  outcome.overlaps = loop.overlaps();
   outcome.converged = !outcome.cancelled && loop.converged();
   outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   progress.report(1);

@@ -305,6 +305,7 @@ class Layout {
       of[g.first].notes.push_back("A gap of " + length_text(g.volume) + " mm3 towards \"" +
                                   of[g.second].name + "\", " + length_text(g.least_width) +
                                   " mm wide at " + place_text(g.place) + " mm.");
+    assembly_.overlaps = {assembly_.partition->names(), std::move(shares_)};
   }
 
   const Study& study_;

@@ -37,7 +37,7 @@ struct Assembly {
   std::vector<Member> members;  ///< [region], what is around the bodies last
   std::unique_ptr<const Partition<3>> partition;
   bool full = false;  ///< the bodies leave nothing of the domain to what is around them
-  ZonePtr<3> domain;
+  ZonePtr<3> domain;  ///< the mesh fills it
   std::vector<std::int32_t> body_of;        ///< [region] body of an exact mesh, -1: dropped
   std::optional<ReferenceSurface<3>> wall;  ///< of the domain; unset: that of the mesh, planes
   SimplexMesh<3> first;                     ///< of the whole domain, one body
@@ -45,6 +45,7 @@ struct Assembly {
   double border_share = 0;                  ///< of the layer there: the size across borders
   double mesh_tolerance = 0;                ///< what the tessellations have left of it for the mesh
   std::vector<BodyOutcome> outcomes;        ///< [region], with overlaps and gaps in the notes
+  StudyOverlaps overlaps;
 
   /// At most the distance of x to what the region is in the mesh, mm; 0 or less within.
   double beyond(int region, const Vec<3>& x) const;

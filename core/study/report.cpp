@@ -90,6 +90,94 @@ Json body_json(const BodyOutcome& body) {
           {"records", std::move(records)}};
 }
 
+Json place_json(const Vec<3>& x) { return {x[0], x[1], x[2]}; }
+
+Json overlaps_json(const StudyOverlaps& found) {
+  const auto name = [&](int region) { return found.names[static_cast<std::size_t>(region)]; };
+  Json overlaps = Json::array(), gaps = Json::array();
+  for (const Overlap& o : found.report.overlaps) {
+    overlaps.push_back({{"bodies", {name(o.first), name(o.second)}},
+                        {"volume", o.volume},
+                        {"error", o.error},
+                        {"depth", o.depth},
+                        {"place", place_json(o.place)}});
+    if (o.inner) overlaps.back()["inner"] = name(*o.inner);
+  }
+  for (const Gap& g : found.report.gaps)
+    gaps.push_back({{"bodies", {name(g.first), name(g.second)}},
+                    {"volume", g.volume},
+                    {"error", g.error},
+                    {"mean_width", g.mean_width},
+                    {"least_width", g.least_width},
+                    {"place", place_json(g.place)}});
+  return {{"overlaps", overlaps}, {"gaps", gaps}};
+}
+
+double number(const Json& json, const char* name) {
+  const Json& value = json.at(name);
+  return value.is_null() ? std::nan("") : value.get<double>();
+}
+
+Vec<3> place_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+LayerStats layers_of(const Json& json) {
+  LayerStats layers;
+  layers.mean = number(json, "mean");
+  layers.p5 = number(json, "p5");
+  layers.p50 = number(json, "median");
+  layers.p95 = number(json, "p95");
+  layers.share_reached = number(json, "share_reached");
+  layers.places = json.at("places").get<std::size_t>();
+  return layers;
+}
+
+IterationRecord iteration_of(const Json& json) {
+  IterationRecord r;
+  r.iteration = json.at("iteration").get<int>();
+  r.nodes = json.at("nodes").get<std::size_t>();
+  r.elements = json.at("elements").get<std::size_t>();
+  r.volume = number(json, "volume");
+  r.quality_min = number(json, "quality_min");
+  r.quality_mean = number(json, "quality_mean");
+  r.conformity = number(json, "conformity");
+  r.unit_edges = number(json, "unit_edges");
+  r.layers = layers_of(json.at("layers"));
+  r.layers_by_nodes = number(json, "layers_by_nodes");
+  r.mixed = json.at("mixed").get<std::size_t>();
+  r.interface_error = number(json, "interface_error");
+  r.flow_rate = number(json, "flow_rate");
+  r.flow_pressure = number(json, "flow_pressure");
+  r.forecast_nodes = number(json, "forecast_nodes");
+  r.forecast_memory = number(json, "forecast_memory");
+  r.seconds = number(json, "seconds");
+  return r;
+}
+
+BodyOutcome body_of(const Json& json) {
+  BodyOutcome body;
+  body.name = json.at("name").get<std::string>();
+  body.layers_asked = json.at("layers_asked").get<int>();
+  body.first_mesh_by = json.at("first_mesh_by").get<std::string>();
+  body.cad_volume = number(json, "cad_volume");
+  body.mesh_volume = number(json, "mesh_volume");
+  const auto farthest = [&](const char* name) {
+    return FarthestPoint{number(json.at(name), "distance"), place_of(json.at(name).at("place"))};
+  };
+  body.boundary_distance = {farthest("boundary_to_part"), farthest("part_to_boundary")};
+  body.chord_tolerance = number(json, "chord_tolerance");
+  body.h_min = number(json, "h_min");
+  body.interface_size = number(json, "interface_size");
+  body.interface_error = number(json, "interface_error");
+  body.layers = layers_of(json.at("layers"));
+  for (const Json& p : json.at("below"))
+    body.below.push_back({place_of(p.at("place")), number(p, "layers"), number(p, "area")});
+  body.notes = json.at("notes").get<std::vector<std::string>>();
+  for (const Json& r : json.at("records")) body.records.push_back(iteration_of(r));
+  return body;
+}
+
 std::string dump(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
@@ -117,12 +205,12 @@ Result<Report> build_report(const Study& study, const Outcome& outcome,
   report.outcome = outcome;
   report.context = context;
   const MeshState& state = *outcome.state;
-  Result<MeshReport> validity = inspect<3>(state.mesh, progress.portion(0, 0.6));
+  Result<MeshReport> validity = inspect<3>(state.mesh, progress.portion(0, 0.5));
   if (!validity) return validity.error();
   report.validity = *validity;
 
   MeshState measured = state;
-  Result<IterationRecord> record = measure(measured, progress.portion(0.6, 0.9));
+  Result<IterationRecord> record = measure(measured, progress.portion(0.5, 0.7));
   if (!record) return record.error();
   std::vector<IterationRecord> of_body(outcome.bodies.size());
   std::vector<const IterationRecord*> records;
@@ -133,7 +221,7 @@ Result<Report> build_report(const Study& study, const Outcome& outcome,
   report.final_record = *record;
   if (!records.empty()) report.final_record.layers = join(records).layers;
 
-  Result<Fitness> found = fitness(state.mesh, progress.portion(0.9, 1));
+  Result<Fitness> found = fitness(state.mesh, progress.portion(0.7, 0.8));
   if (!found) return found.error();
   report.fitness = std::move(*found);
   for (const double q : state.quality) report.quality.add(q);
@@ -142,6 +230,12 @@ Result<Report> build_report(const Study& study, const Outcome& outcome,
   for (const BodyOutcome& body : outcome.bodies) asked = std::max(asked, body.layers_asked);
   report.layers = Histogram(0, 2.5 * asked, 25);
   for (std::size_t v = 1; v < state.layers.size(); ++v) report.layers.add(state.layers[v]);
+  Result<std::optional<ReportPicture>> map = layers_map(study, state, progress.portion(0.8, 0.9));
+  if (!map) return map.error();
+  report.layers_map = std::move(*map);
+  Result<std::vector<ReportPicture>> drawn = sections(study, state, progress.portion(0.9, 1));
+  if (!drawn) return drawn.error();
+  report.sections = std::move(*drawn);
   progress.report(1);
   return report;
 }
@@ -195,6 +289,7 @@ std::string report_json(const Report& report) {
   json["layers"]["histogram"] = histogram_json(report.layers);
   json["bodies"] = Json::array();
   for (const BodyOutcome& body : report.outcome.bodies) json["bodies"].push_back(body_json(body));
+  if (report.outcome.overlaps) json["overlaps"] = overlaps_json(*report.outcome.overlaps);
   json["records"] = Json::array();
   for (const IterationRecord& r : report.outcome.records)
     json["records"].push_back(iteration_json(r));
@@ -207,6 +302,22 @@ std::string report_json(const Report& report) {
                                {"finding", c.finding},
                                {"notes", c.notes}});
   return dump(json, 2) + "\n";
+}
+
+Result<Outcome> outcome_from_json(const std::string& report) {
+  const Json json = Json::parse(report, nullptr, false);
+  try {
+    Outcome outcome;
+    outcome.converged = json.at("converged").get<bool>();
+    outcome.cancelled = json.at("cancelled").get<bool>();
+    outcome.seconds = number(json, "seconds");
+    for (const Json& body : json.at("bodies")) outcome.bodies.push_back(body_of(body));
+    for (const Json& record : json.at("records")) outcome.records.push_back(iteration_of(record));
+    return outcome;
+  } catch (const Json::exception&) {
+    return Error{Code::bad_input, "The report is none of this version.",
+                 "Run the study again to have one."};
+  }
 }
 
 Result<void> write_report(const Report& report, const std::filesystem::path& stem) {

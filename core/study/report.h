@@ -6,6 +6,7 @@
 #include "core/io/export_certificate.h"
 #include "core/mesh/fitness.h"
 #include "core/mesh/validate.h"
+#include "core/study/report_pictures.h"
 #include "core/study/run.h"
 #include "core/study/svg_plot.h"
 
@@ -28,8 +29,7 @@ std::vector<InputFile> inputs_of(const Study& study);
 struct ReportContext {
   std::vector<InputFile> inputs;
   std::vector<ExportCertificate> exports;
-  std::string command;      ///< how to reproduce the mesh
-  std::string section_png;  ///< bytes of a PNG of the mesh; empty: no picture
+  std::string command;  ///< how to reproduce the mesh
 };
 
 /// Everything a report says, measured on the mesh of the outcome.
@@ -42,6 +42,8 @@ struct Report {
   Fitness fitness;
   Histogram quality{0, 1, 25};
   Histogram layers{0, 1, 1};  ///< of the nodes where layers were measured
+  std::optional<ReportPicture> layers_map;
+  std::vector<ReportPicture> sections;
 };
 
 /// What solvers ask of the mesh, judged.
@@ -53,6 +55,8 @@ Result<Report> build_report(const Study& study, const Outcome& outcome,
 
 /// The report for programs.
 std::string report_json(const Report& report);
+/// What `report_json` tells of the run, without its mesh. Error: bad_input.
+Result<Outcome> outcome_from_json(const std::string& report);
 /// The report for people: one page of HTML that needs no other file.
 std::string report_html(const Report& report);
 

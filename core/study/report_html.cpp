@@ -20,31 +20,32 @@ header span{color:var(--soft)}
 .badges{margin:14px 0 4px}
 .badge{display:inline-block;padding:3px 10px;border-radius:11px;font-size:12.5px;font-weight:600;margin:0 6px 6px 0;border:1px solid}
 .good{color:var(--good);background:#e9f5ee}.warn{color:var(--warn);background:#fdf3e4}.bad{color:var(--bad);background:#fdeceb}
-.tiles{display:grid;grid-template-columns:repeat(6,1fr);gap:10px;margin-top:10px}
-.tile{border:1px solid var(--line);border-radius:5px;padding:10px 12px}
-.tile b{display:block;font-size:20px;font-weight:650;white-space:nowrap}
-.tile span{color:var(--soft);font-size:12px}
+.tiles{border-collapse:separate;border-spacing:10px 0;margin:10px -10px 0;width:calc(100% + 20px)}
+.tiles td{border:1px solid var(--line);border-radius:5px;padding:10px 12px;text-align:left;width:16%}
+.tiles b{font-size:20px;font-weight:650;white-space:nowrap}
+.tiles span{color:var(--soft);font-size:12px}
 table{border-collapse:collapse;width:100%}
 th,td{text-align:right;padding:5px 8px;border-bottom:1px solid var(--line);font-variant-numeric:tabular-nums;vertical-align:top}
 td{white-space:nowrap}td.left,.wrap{white-space:normal}
 th{font-size:12px;color:var(--soft);font-weight:600}
 td:first-child,th:first-child,td.left,th.left{text-align:left}
-.plots{display:grid;grid-template-columns:1fr 1fr;gap:8px 28px}
-figure{margin:0}
-figcaption{font-weight:600;margin-bottom:2px}
-figure.wide{grid-column:1/3}
-figure img{max-width:100%;max-height:420px;display:block;margin:auto}
+.plots,.two{table-layout:fixed}
+.plots>tbody>tr>td,.two>tbody>tr>td{border:0;padding:0 28px 8px 0;white-space:normal;text-align:left}
+.plots>tbody>tr>td+td,.two>tbody>tr>td+td{padding-right:0}
+.caption{font-weight:600;margin:12px 0 2px}
+.legend{margin:4px 0}
+.legend span{color:var(--soft);margin-right:14px}
+img{max-width:100%;display:block}
 svg{width:100%;height:auto;font:11px "Inter","Segoe UI","Noto Sans","DejaVu Sans",sans-serif;fill:var(--soft)}
 svg .grid{stroke:#e6eaee}svg .axis{stroke:var(--ink)}svg .bar{fill:var(--accent)}
 svg .mark{stroke:var(--bad);stroke-dasharray:5 4}svg .note{fill:var(--bad)}svg .label{fill:var(--ink)}
-.two{display:grid;grid-template-columns:1fr 1fr;gap:0 32px}
 code,pre{font:12px "JetBrains Mono","DejaVu Sans Mono",monospace}
 pre{background:#f4f6f8;border:1px solid var(--line);border-radius:4px;padding:9px 12px;white-space:pre-wrap;word-break:break-all;margin:0}
 .hash{word-break:break-all;color:var(--soft)}
 ul{margin:4px 0;padding-left:18px}
 footer{margin-top:26px;border-top:1px solid var(--line);padding-top:8px;color:var(--soft);font-size:12px}
-@media print{body{background:#fff}main{box-shadow:none;margin:0;max-width:none;padding:0}h2{break-after:avoid}figure,tr{break-inside:avoid}}
-@media(max-width:760px){.tiles{grid-template-columns:repeat(2,1fr)}.plots,.two{grid-template-columns:1fr}figure.wide{grid-column:1}main{padding:18px}}
+@media print{body{background:#fff}main{box-shadow:none;margin:0;max-width:none;padding:0}h2{break-after:avoid}img,svg,tr{break-inside:avoid}}
+@media(max-width:760px){.tiles td,.plots>tbody>tr>td,.two>tbody>tr>td{display:block;width:auto}main{padding:18px}}
 )";
 
 std::string cell(const std::string& text, bool left = false) {
@@ -84,7 +85,7 @@ std::string badge(const char* kind, const std::string& text) {
 }
 
 std::string tile(const std::string& value, const std::string& name) {
-  return "<div class=\"tile\"><b>" + value + "</b><span>" + name + "</span></div>";
+  return "<td><b>" + value + "</b><br><span>" + name + "</span></td>";
 }
 
 std::string base64(const std::string& bytes) {
@@ -141,12 +142,12 @@ std::string tiles(const Report& r) {
     cad += b.cad_volume;
     mesh += b.mesh_volume;
   }
-  return "<div class=\"tiles\">" + tile(grouped(f.nodes), "nodes") +
+  return "<table class=\"tiles\"><tr>" + tile(grouped(f.nodes), "nodes") +
          tile(grouped(f.elements), "tetrahedra") +
          tile(layers_text(f.layers, f.layers.mean), "layers, mean") +
          tile(layers_text(f.layers, f.layers.p5), "layers, 5 % quantile") +
          tile(fixed(f.quality_mean, 3) + " / " + fixed(f.quality_min, 3), "quality, mean / worst") +
-         tile(difference(mesh, cad), "volume against CAD") + "</div>";
+         tile(difference(mesh, cad), "volume against CAD") + "</tr></table>";
 }
 
 std::string bodies_table(const Report& r) {
@@ -190,21 +191,84 @@ std::string below_table(const Report& r) {
   return html;
 }
 
-std::string plots(const Report& r) {
-  std::string html = "<h2>Measured on the mesh</h2><div class=\"plots\">";
-  if (!r.context.section_png.empty())
+std::string image(const ReportPicture& picture) {
+  return "<p class=\"caption\">" + escaped(picture.caption) + "</p><img alt=\"" +
+         escaped(picture.caption) + "\" width=\"" + std::to_string(picture.width) +
+         "\" src=\"data:image/png;base64," + base64(picture.png) + "\">";
+}
+
+std::string pictures(const Report& r) {
+  if (!r.layers_map && r.sections.empty()) return {};
+  std::string html = "<h2>The mesh</h2>";
+  if (r.layers_map) {
+    html += image(*r.layers_map) + "<p class=\"legend\">";
+    for (const auto& [color, text] : layers_legend()) {
+      char hex[8];
+      std::snprintf(hex, sizeof hex, "#%02x%02x%02x", static_cast<unsigned>(255 * color.r),
+                    static_cast<unsigned>(255 * color.g), static_cast<unsigned>(255 * color.b));
+      html += std::string("<b style=\"background-color:") + hex +
+              "\">&nbsp;&nbsp;&nbsp;&nbsp;</b> <span>" + text + "</span> ";
+    }
+    html += "</p>";
+  }
+  for (const ReportPicture& section : r.sections) html += image(section);
+  return html;
+}
+
+std::string overlaps(const Report& r) {
+  if (!r.outcome.overlaps) return {};
+  const auto& [names, found] = *r.outcome.overlaps;
+  const auto pair = [&](int first, int second) {
+    return cell(escaped(names[static_cast<std::size_t>(first)] + " and " +
+                        names[static_cast<std::size_t>(second)]),
+                true);
+  };
+  const auto volume = [](double value, double error) {
+    return cell(short_number(value, 3) + " &plusmn; " + short_number(error, 2));
+  };
+  const auto place = [](const Vec<3>& x) {
+    return cell(short_number(x[0], 4) + ", " + short_number(x[1], 4) + ", " +
+                short_number(x[2], 4));
+  };
+  std::string html = "<h2>Overlaps and gaps between the bodies</h2>";
+  if (found.overlaps.empty()) html += "<p>No bodies overlap.</p>";
+  if (!found.overlaps.empty()) {
     html +=
-        "<figure class=\"wide\"><figcaption>Section</figcaption>"
-        "<img alt=\"Section of the mesh\" src=\"data:image/png;base64," +
-        base64(r.context.section_png) + "\"></figure>";
+        "<table><tr><th>overlap of</th><th>volume mm&sup3;</th><th>depth mm</th>"
+        "<th>deepest at mm</th><th></th></tr>";
+    for (const Overlap& o : found.overlaps)
+      html += "<tr>" + pair(o.first, o.second) + volume(o.volume, o.error) +
+              cell(short_number(o.depth, 3)) + place(o.place) +
+              cell(o.inner ? escaped(names[static_cast<std::size_t>(*o.inner)]) +
+                                 " lies wholly in the other"
+                           : "",
+                   true) +
+              "</tr>";
+    html += "</table>";
+  }
+  if (!found.gaps.empty()) {
+    html +=
+        "<table><tr><th>gap between</th><th>volume mm&sup3;</th><th>least width mm</th>"
+        "<th>mean</th><th>narrowest at mm</th></tr>";
+    for (const Gap& g : found.gaps)
+      html += "<tr>" + pair(g.first, g.second) + volume(g.volume, g.error) +
+              cell(short_number(g.least_width, 3)) + cell(short_number(g.mean_width, 3)) +
+              place(g.place) + "</tr>";
+    html += "</table>";
+  }
+  return html;
+}
+
+std::string plots(const Report& r) {
+  std::string html = "<h2>Measured on the mesh</h2><table class=\"plots\"><tr><td>";
   int asked = 0;
   for (const BodyOutcome& b : r.outcome.bodies) asked = std::max(asked, b.layers_asked);
-  html += "<figure><figcaption>Element quality c(T), 1 is best</figcaption>" +
-          svg_histogram(r.quality, "quality in the metric") + "</figure>";
-  html += "<figure><figcaption>Layers through the walls, measured back</figcaption>" +
+  html += "<p class=\"caption\">Element quality c(T), 1 is best</p>" +
+          svg_histogram(r.quality, "quality in the metric") + "</td><td>";
+  html += "<p class=\"caption\">Layers through the walls, measured back</p>" +
           svg_histogram(r.layers, "layers at the nodes of thin walls", asked,
                         "asked: " + std::to_string(asked)) +
-          "</figure>";
+          "</td></tr><tr><td>";
   std::vector<Series> series(3);
   series[0].name = "nodes";
   series[1].name = "mean";
@@ -215,10 +279,10 @@ std::string plots(const Report& r) {
     series[2].values.push_back(record.layers.p5);
   }
   series[1].right = series[2].right = true;
-  html += "<figure><figcaption>Convergence</figcaption>" +
-          svg_convergence(series, "left", "layers, right", asked) + "</figure>";
+  html += "<p class=\"caption\">Convergence</p>" +
+          svg_convergence(series, "left", "layers, right", asked) + "</td><td>";
   html +=
-      "<figure><figcaption>Iterations</figcaption><table><tr><th>it</th><th>nodes</th>"
+      "<p class=\"caption\">Iterations</p><table><tr><th>it</th><th>nodes</th>"
       "<th>layers</th><th>5 %</th><th>quality</th><th>worst</th><th>s</th></tr>";
   for (const IterationRecord& record : r.outcome.records)
     html += "<tr>" + cell(std::to_string(record.iteration), true) + cell(grouped(record.nodes)) +
@@ -226,14 +290,14 @@ std::string plots(const Report& r) {
             cell(layers_text(record.layers, record.layers.p5)) +
             cell(fixed(record.quality_mean, 3)) + cell(fixed(record.quality_min, 3)) +
             cell(fixed(record.seconds, 1)) + "</tr>";
-  return html + "</table></figure></div>";
+  return html + "</table></td></tr></table>";
 }
 
 std::string conformity_and_settings(const Report& r) {
   const IterationRecord& f = r.final_record;
   const MeshReport& v = r.validity;
   const StudyOptions& o = r.study.options;
-  std::string html = "<div class=\"two\"><div><h2>Mesh</h2><table>";
+  std::string html = "<table class=\"two\"><tr><td><h2>Figures</h2><table>";
   html += row("boundary triangles", grouped(v.faces_boundary));
   html += row("inverted elements", grouped(v.inverted));
   html += row("faces of more than two elements", grouped(v.faces_shared));
@@ -243,7 +307,7 @@ std::string conformity_and_settings(const Report& r) {
   html += row("boundary area", short_number(v.boundary_area, 8) + " mm&sup2;");
   html += row("conformity to the metric (0 is perfect)", fixed(f.conformity, 3));
   html += row("unit edges", percent(f.unit_edges));
-  html += "</table></div><div><h2>Settings</h2><table>";
+  html += "</table></td><td><h2>Settings</h2><table>";
   for (const BodyOutcome& b : r.outcome.bodies) {
     const BodySettings s = settings_of(r.study, b.name);
     html += row(b.name + ": n, alpha", std::to_string(s.layers) + ", " + short_number(s.alpha));
@@ -268,7 +332,7 @@ std::string conformity_and_settings(const Report& r) {
   html += row("seed", std::to_string(o.seed));
   html += row("detector", std::string(detector_name(o.detector)));
   html += row("time", short_number(r.outcome.seconds, 3) + " s");
-  return html + "</table></div></div>";
+  return html + "</table></td></tr></table>";
 }
 
 std::string solvers(const Report& r) {
@@ -334,8 +398,9 @@ std::string report_html(const Report& report) {
          escaped(report.study.name) + " - mesh report</title><style>" + kStyle +
          "</style></head>\n<body><main><header><h1>" + escaped(report.study.name) +
          "</h1><span>Mesh report &middot; Lamella " + version() + "</span></header>\n" +
-         verdict(report) + tiles(report) + bodies_table(report) + below_table(report) +
-         plots(report) + conformity_and_settings(report) + solvers(report) + files(report) +
+         verdict(report) + tiles(report) + bodies_table(report) + pictures(report) +
+         below_table(report) + plots(report) + overlaps(report) + conformity_and_settings(report) +
+         solvers(report) + files(report) +
          "<footer>Lengths in mm. Quality, conformity and edges are measured in the metric asked; "
          "layers are counted from wall to wall in the mesh's own metric; boundary to part and part "
          "to "

@@ -429,6 +429,19 @@ class BodyLoop {
   BodyOutcome outcome_;
 };
 
+/// A report that cannot be made is left out: the mesh does not need it.
+void look_for_overlaps(const Study& study, const std::vector<Part>& parts, const Progress& progress,
+                       Outcome& outcome) {
+  Study of_parts = study;
+  of_parts.zones.clear();
+  OverlapOptions options;
+  for (const BodyOutcome& body : outcome.bodies)
+    options.contact = std::max(options.contact, body.chord_tolerance);
+  options.gap_width = 2 * options.contact;
+  if (Result<StudyOverlaps> found = study_overlaps(of_parts, parts, options, progress); found)
+    outcome.overlaps = std::move(*found);
+}
+
 }  // namespace
 
 Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
@@ -552,10 +565,12 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
     outcome.converged = outcome.converged && body.converged();
     outcome.bodies.push_back(std::move(*closed));
   }
-  if (outcome.bodies.size() > 1)
+  if (outcome.bodies.size() > 1) {
     for (BodyOutcome& body : outcome.bodies)
       body.notes.emplace_back(
           "Bodies are meshed one by one: where they touch, nodes are not shared.");
+    look_for_overlaps(study, parts, progress.portion(1, 1), outcome);
+  }
   outcome.seconds = seconds_since(start);
   progress.report(1);
   return outcome;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
@@ -12,6 +13,7 @@
 #include "core/natural/boundary_distance.h"
 #include "core/natural/layers.h"
 #include "core/optimize/generate.h"
+#include "core/study/domain.h"
 #include "core/study/flow_round.h"
 #include "core/study/record.h"
 #include "core/study/study.h"
@@ -52,9 +54,10 @@ struct BodyOutcome {
 struct Outcome {
   std::shared_ptr<const MeshState> state;  ///< all bodies in one mesh
   std::vector<BodyOutcome> bodies;
-  std::vector<IterationRecord> records;  ///< of the whole
-  bool cancelled = false;                ///< stopped early: `state` is the best so far
-  bool converged = false;                ///< every body has n layers in the mean and settled
+  std::optional<StudyOverlaps> overlaps;  ///< between the bodies as given; unset: not looked for
+  std::vector<IterationRecord> records;   ///< of the whole
+  bool cancelled = false;                 ///< stopped early: `state` is the best so far
+  bool converged = false;                 ///< every body has n layers in the mean and settled
   double seconds = 0;
 };
 

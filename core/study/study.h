@@ -45,7 +45,7 @@ struct BodySettings {
   std::optional<int> layers3{};  ///< n3 of all sizes beyond; unset: not divided
   std::optional<std::array<double, 3>> color{};  ///< RGB in [0, 1]; unset: the file's or our own
   /// Size across the body's borders in one mesh of all bodies, of two bodies the smaller counts;
-  /// unset: a quarter of its thinnest layer.
+  /// unset: a quarter of the layer there.
   std::optional<double> interface_size{};
   bool flow = true;  ///< the study's flow may correct the mesh of this body
   BodyRole role = BodyRole::none;

@@ -141,6 +141,37 @@ TEST_F(CliRun, WrongSettingsAreToldBeforeAnythingIsMeshed) {
   EXPECT_EQ(folder.names(), (Names{"box.stl", "broken.lamella", "newer.json", "s.json"}));
 }
 
+TEST_F(CliRun, TheManualNamesEverySubcommandAndOption) {
+  ASSERT_EQ(run("manual"), 0) << err;
+  const std::string page = out;
+  EXPECT_TRUE(page.starts_with(".TH LAMELLA\\-CLI 1 "));
+  ASSERT_EQ(run("--help"), 0);
+  const std::string help = out.substr(out.find("Subcommands:"));
+  int options = 0;
+  for (std::size_t at = 0; (at = help.find("\n  ", at + 1)) != std::string::npos;) {
+    const std::string name = help.substr(at + 3, help.find(' ', at + 3) - at - 3);
+    if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz") != name.npos) continue;
+    const std::size_t section = page.find("\n.SS " + name + "\n");
+    ASSERT_NE(section, std::string::npos) << name;
+    const std::string of_name = page.substr(section, page.find("\n.S", section + 5) - section);
+    ASSERT_EQ(run(name + " --help"), 0);
+    for (std::size_t dash = 0; (dash = out.find("--", dash)) != std::string::npos; dash += 2) {
+      // Options stand at the start of a line; further ones belong to descriptions.
+      const std::size_t line = out.rfind('\n', dash) + 1;
+      if (out.compare(line, 3, "  -") != 0 || out.compare(dash, 6, "--help") == 0)
+        continue;
+      std::string option = out.substr(dash, out.find_first_of(" ,\n[", dash) - dash);
+      std::string as_roff;
+      for (const char c : option) as_roff += c == '-' ? std::string("\\-") : std::string(1, c);
+      EXPECT_NE(of_name.find("\\fB" + as_roff + "\\fR"), std::string::npos) << name << option;
+      ++options;
+      if (out.find('\n', dash) == std::string::npos) break;
+      dash = out.find('\n', dash) - 2;
+    }
+  }
+  EXPECT_GT(options, 100);
+}
+
 TEST_F(CliRun, BashCompletesFromTheOptionsThemselves) {
   ASSERT_EQ(run("completion bash"), 0) << err;
   write("c.sh", out);

@@ -47,7 +47,7 @@ TEST_F(Cli, WrongUsageIsStatus2AndWritesNothing) {
         "mesh a.step --size-cylinder 0,0,0,0,0,1,1,1y -o b.msh",
         "mesh a.step --size-face 3 -o b.msh",
         "mesh a.step --size-face box:3,x -o b.msh",
-        "adapt a.mesh -o b.mesh",
+        "adapt a.mesh --field size --metric uniform -o b.mesh",
         "adapt a.mesh --sol a.sol --metric uniform -o b.mesh",
         "adapt a.mesh --metric uniform --background -o b.mesh",
         "adapt a.mesh --metric uniform --mean median -o b.mesh",

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace lamella::test {
 
@@ -42,6 +44,24 @@ inline double number_behind(const std::string& text, const std::string& label) {
   const std::size_t at = text.find(label);
   if (at == std::string::npos) return std::nan("");
   return std::strtod(text.c_str() + at + label.size(), nullptr);
+}
+
+/// The numbers behind a label up to a closing mark, as "x = 1, 2 ;"; none without the label.
+inline std::vector<double> numbers_behind(const std::string& text, const std::string& label,
+                                          char close) {
+  std::vector<double> numbers;
+  std::size_t at = text.find(label);
+  if (at == std::string::npos) return numbers;
+  at += label.size();
+  const char* next = text.c_str() + at;
+  const char* const end = text.c_str() + std::min(text.size(), text.find(close, at));
+  while (next < end) {
+    char* after = nullptr;
+    const double number = std::strtod(next, &after);
+    if (after > next && after <= end) numbers.push_back(number);
+    next = after > next ? after : next + 1;
+  }
+  return numbers;
 }
 
 }  // namespace lamella::test

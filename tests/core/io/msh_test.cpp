@@ -156,5 +156,74 @@ TEST(Certificate, AGroupWithoutFacetsLeavesNoTraceWhereThereAreNoNames) {
   EXPECT_TRUE(certify("f", "x", summarize(other), summarize(mesh), false).agrees);
 }
 
+// A tetrahedron of second order with a triangle of its boundary, as Gmsh writes them.
+const char* const kSecondOrder = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+10
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 .5 0 0
+6 .5 .5 0
+7 0 .5 0
+8 0 0 .5
+9 0 .5 .5
+10 .5 0 .5
+$EndNodes
+$Elements
+2
+1 9 2 7 1 1 3 2 7 6 5
+2 11 2 3 1 1 2 3 4 5 6 7 8 9 10
+$EndElements
+$NodeData
+1
+"size"
+1
+0
+3
+0
+1
+10
+1 .1
+2 .2
+3 .3
+4 .4
+5 9
+6 9
+7 9
+8 9
+9 9
+10 9
+$EndNodeData
+)";
+
+TEST(MshOfOthers, SecondOrderCountsByItsCorners) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_file(folder / "m.msh", kSecondOrder).ok());
+  const Result<MeshContent> back = read_msh(folder / "m.msh");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->mesh.node_count(), 4u);
+  ASSERT_EQ(back->mesh.element_count(), 1u);
+  EXPECT_NEAR(signed_measure<3>(back->mesh.corners(back->mesh.elements[0])), 1.0 / 6, 1e-15);
+  ASSERT_EQ(back->mesh.facets.size(), 1u);
+  EXPECT_EQ(back->mesh.groups, (std::vector<std::string>{"group 7"}));
+  ASSERT_EQ(back->of_nodes.size(), 1u);
+  EXPECT_EQ(back->of_nodes[0].values, (std::vector<double>{0, 0.1, 0.2, 0.3, 0.4}));
+}
+
+TEST(MshOfOthers, SolidsThatAreNoTetrahedraAreRefusedNotLost) {
+  const test::TemporaryFolder folder;
+  std::string text = kSecondOrder;
+  const std::size_t at = text.find("2 11 2 3 1");
+  text.replace(at, text.find('\n', at) - at, "2 5 2 3 1 1 2 3 4 5 6 7 8");
+  ASSERT_TRUE(write_file(folder / "m.msh", text).ok());
+  const Result<MeshContent> back = read_msh(folder / "m.msh");
+  ASSERT_FALSE(back.ok());
+  EXPECT_NE(back.error().message.find("hexahedra"), std::string::npos) << back.error().message;
+}
+
 }  // namespace
 }  // namespace lamella

@@ -92,6 +92,21 @@ TEST_F(ProjectFile, HoldsStudyMeshAndReport) {
   EXPECT_FALSE(fs::exists(unpacked)) << "what was unpacked goes with the project";
 }
 
+TEST_F(ProjectFile, ItsHeadIsReadWithoutMeshAndInputs) {
+  ProjectContent saved = content();
+  saved.report_json = "{}";
+  ASSERT_TRUE(save_project(saved, file));
+  fs::remove_all(folder / "parts");
+  const Result<Project> head = open_project_head(file);
+  ASSERT_TRUE(head) << head.error().message;
+  ASSERT_TRUE(head->mesh_study);
+  EXPECT_EQ(mesh_key(*head->mesh_study), mesh_key(saved.study));
+  EXPECT_EQ(head->report_json, "{}");
+  EXPECT_TRUE(head->mesh.empty() && head->files.empty() && !head->folder);
+  ASSERT_TRUE(save_project(content(""), file));
+  EXPECT_FALSE(open_project_head(file)->mesh_study);
+}
+
 TEST_F(ProjectFile, AChangedInputIsToldAndReadAnew) {
   ASSERT_TRUE(save_project(content(), file));
   write("parts/a.stl", "solid b");

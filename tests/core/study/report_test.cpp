@@ -50,6 +50,10 @@ Outcome some_outcome() {
   auto filled = std::make_shared<MeshState>(measured);
   filled->quality.assign(filled->mesh.elements.size(), c);
   outcome.state = filled;
+  StudyOverlaps overlaps{{"cover <A&B>", "pin"}, {}};
+  overlaps.report.overlaps = {{0, 1, 2.5, 0.01, {1, 2, 3}, 0.25, 1}};
+  overlaps.report.gaps = {{0, 1, 0.5, 0.02, 0.06, 0.04, {4, 5, 6}}};
+  outcome.overlaps = overlaps;
   return outcome;
 }
 
@@ -62,7 +66,6 @@ Report some_report() {
   context.exports.push_back(certify("tray.msh", "Gmsh MSH 4.1",
                                     summarize(some_outcome().state->mesh),
                                     summarize(some_outcome().state->mesh)));
-  context.section_png = std::string("\x89PNG\r\n\x1a\n", 8);
   return build_report(study, some_outcome(), context).value();
 }
 
@@ -93,6 +96,37 @@ TEST(Report, JsonCarriesWhatProgramsNeed) {
   EXPECT_EQ(json["study"]["schema"], kStudySchema);
 }
 
+TEST(Report, JsonTellsOverlapsAndGaps) {
+  const auto json = nlohmann::json::parse(report_json(some_report()))["overlaps"];
+  EXPECT_EQ(json["overlaps"][0]["bodies"], (std::vector<std::string>{"cover <A&B>", "pin"}));
+  EXPECT_EQ(json["overlaps"][0]["depth"], 0.25);
+  EXPECT_EQ(json["overlaps"][0]["inner"], "pin");
+  EXPECT_EQ(json["gaps"][0]["least_width"], 0.04);
+}
+
+TEST(Report, TheRunCanBeReadFromItAgain) {
+  Outcome before = some_outcome();
+  before.converged = true;
+  before.seconds = 12.5;
+  before.bodies[0].below = {{{1, 2, 3}, 2.5, 0.75}};
+  const Result<Outcome> back = outcome_from_json(report_json(build_report({}, before, {}).value()));
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_TRUE(back->converged && !back->cancelled && !back->state);
+  EXPECT_EQ(back->seconds, 12.5);
+  ASSERT_EQ(back->records.size(), 3u);
+  EXPECT_EQ(back->records[2].nodes, 300u);
+  EXPECT_EQ(back->records[2].layers.p5, 3.5);
+  ASSERT_EQ(back->bodies.size(), 1u);
+  const BodyOutcome& body = back->bodies[0];
+  EXPECT_EQ(body.name, "cover <A&B>");
+  EXPECT_EQ(body.boundary_distance.from_surface.place, Vec<3>(4, 5, 6));
+  EXPECT_EQ(body.below[0].area, 0.75);
+  EXPECT_EQ(body.notes, before.bodies[0].notes);
+  EXPECT_EQ(body.records.size(), 3u);
+  EXPECT_EQ(outcome_from_json("{}").error().code, Code::bad_input);
+  EXPECT_EQ(outcome_from_json("no JSON").error().code, Code::bad_input);
+}
+
 TEST(Report, HtmlIsOneSafeSelfContainedPage) {
   const std::string html = report_html(some_report());
   EXPECT_NE(html.find("cover &lt;A&amp;B&gt;"), std::string::npos);
@@ -100,10 +134,17 @@ TEST(Report, HtmlIsOneSafeSelfContainedPage) {
   // Nothing is loaded from elsewhere.
   EXPECT_EQ(html.find("http"), std::string::npos);
   EXPECT_EQ(html.find("<script"), std::string::npos);
-  EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo="), std::string::npos);
+  // The layers map and two sections.
+  int pictures = 0;
+  for (auto at = html.find("data:image/png;base64,iVBORw0KGgo"); at != std::string::npos;
+       at = html.find("data:image/png;base64,iVBORw0KGgo", at + 1))
+    ++pictures;
+  EXPECT_EQ(pictures, 3);
+  EXPECT_NE(html.find("pin lies wholly in the other"), std::string::npos);
+  EXPECT_NE(html.find("gap between"), std::string::npos);
   EXPECT_NE(html.find(std::string(64, 'a')), std::string::npos);
   EXPECT_NE(html.find("lamella-cli mesh tray.step -n 4 -o tray.msh"), std::string::npos);
-  for (const std::string tag : {"svg", "table", "figure", "div", "h2", "tr", "td", "main"}) {
+  for (const std::string tag : {"svg", "table", "p", "div", "h2", "tr", "td", "main"}) {
     const auto count = [&](const std::string& what) {
       int n = 0;
       for (auto at = html.find(what); at != std::string::npos; at = html.find(what, at + 1)) ++n;
