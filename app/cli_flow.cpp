@@ -30,7 +30,7 @@ struct Input {
 Result<Input> read_input(const std::string& file, const Progress& progress) {
   Input out;
   if (fs::path(file).extension() == ".vtu") {
-    Result<MeshContent> content = read_vtu(file);
+    Result<MeshContent> content = (*mesh_formats().called("vtu"))->read(file, progress);
     if (!content) return content.error();
     if (Result<void> done = complete(*content, file); !done) return done.error();
     out = {std::move(content->mesh), std::move(content->metric), std::move(content->of_nodes)};
