@@ -139,6 +139,20 @@ void say_diagnosis(const FileDiagnosis& file, Console& console) {
                      {"bodies", std::move(bodies)}}));
 }
 
+/// The notes tell it to people, where it was done.
+void emit_wrap(const WrapReport& wrap, Console& console) {
+  const auto deviation = [](const Deviation& d) {
+    return Json{{"distance", d.distance}, {"place", vector_json(d.place)}};
+  };
+  console.emit(dump({{"phase", "wrap"},
+                     {"bodies", wrap.bodies},
+                     {"spacing", wrap.spacing},
+                     {"to_file", deviation(wrap.to_file)},
+                     {"from_file", deviation(wrap.from_file)},
+                     {"bridged", wrap.bridged},
+                     {"specks", wrap.specks}}));
+}
+
 }  // namespace
 
 int run_info(const InfoCommand& c, Console& console) {
@@ -149,6 +163,7 @@ int run_info(const InfoCommand& c, Console& console) {
   say_diagnosis(inspection.diagnosis, console);
   const Result<std::vector<Part>>& parts = inspection.parts;
   if (!parts) return console.fail(of_input(parts.error()));
+  for (const WrapReport& wrap : inspection.wraps) emit_wrap(wrap, console);
   console.say(c.part + ": " + std::to_string(parts->size()) +
               (parts->size() == 1 ? " body" : " bodies"));
   for (const Part& part : *parts) {

@@ -8,7 +8,6 @@
 #include "core/geometry/improve_triangles.h"
 #include "core/geometry/self_intersection.h"
 #include "core/geometry/soup.h"
-#include "core/geometry/wrap.h"
 #include "core/io/stl.h"
 
 namespace lamella {
@@ -69,6 +68,7 @@ std::string percent(double share) { return length_text(100 * share) + " %"; }
 struct WrappedBodies {
   std::vector<ReferenceSurface<3>> bodies;
   double error = 0;  // mm, both ways
+  WrapReport report;
 };
 
 /// Wraps; once more on a grid of half the spacing where walls are lost.
@@ -93,8 +93,13 @@ Result<WrappedBodies> wrap_bodies(const Triangles& triangles, const LoadParams& 
                      length_text(wrapped->from_file.distance) + " mm of the wrap), on a grid of " +
                      length_text(wrapped->spacing) + " mm.";
   const double area = facets_area(wrapped->surface);
-  if (wrapped->bridged_area > 1e-4 * area)
-    text += " " + percent(wrapped->bridged_area / area) + " of the wrap close holes.";
+  WrapReport report{{},
+                    wrapped->spacing,
+                    wrapped->to_file,
+                    wrapped->from_file,
+                    wrapped->bridged_area / area,
+                    wrapped->specks};
+  if (report.bridged > 1e-4) text += " " + percent(report.bridged) + " of the wrap close holes.";
   if (wrapped->specks > 0)
     text += " " + counted(wrapped->specks, "shell") + " smaller than two cells left out.";
   notes.push_back(text);
@@ -103,7 +108,7 @@ Result<WrappedBodies> wrap_bodies(const Triangles& triangles, const LoadParams& 
   auto bodies = surfaces_from_triangles(std::move(wrapped->surface), sound, nullptr,
                                         progress.portion(0.9, 1));
   if (!bodies) return bodies.error();
-  return WrappedBodies{*std::move(bodies), error};
+  return WrappedBodies{*std::move(bodies), error, std::move(report)};
 }
 
 Triangles triangles_of(const ReferenceSurface<3>& surface) {
@@ -113,7 +118,7 @@ Triangles triangles_of(const ReferenceSurface<3>& surface) {
 /// One body made sound: as it is, or wrapped where it crosses itself. Several, when the wrap falls
 /// apart.
 Result<std::vector<Part>> finish(ReferenceSurface<3> surface, const LoadParams& params,
-                                 const Progress& progress) {
+                                 std::optional<WrapReport>& wrap, const Progress& progress) {
   std::vector<Part> parts(1);
   if (params.repair == Repair::automatic) {
     const SelfIntersections crossing = find_self_intersections(surface, progress);
@@ -143,6 +148,7 @@ Result<std::vector<Part>> finish(ReferenceSurface<3> surface, const LoadParams& 
         parts.back().surface = std::move(body);
       }
       parts[0].notes = std::move(notes);
+      wrap = std::move(wrapped->report);
       surface = {};
     }
   }
@@ -158,8 +164,9 @@ Result<std::vector<Part>> finish(ReferenceSurface<3> surface, const LoadParams& 
 /// Parts of triangles that lack connectivity or soundness.
 Result<std::vector<Part>> parts_of(Triangles triangles, const std::string& name,
                                    const LoadParams& params, std::vector<std::string> notes,
-                                   const Progress& progress) {
+                                   std::vector<WrapReport>& wraps, const Progress& progress) {
   std::vector<ReferenceSurface<3>> surfaces;
+  std::optional<WrapReport> whole;
   double error = 0;
   std::optional<Error> refused;
   const bool finite = std::all_of(triangles.points.begin(), triangles.points.end(),
@@ -189,13 +196,18 @@ Result<std::vector<Part>> parts_of(Triangles triangles, const std::string& name,
     if (!bodies) return bodies.error();
     surfaces = std::move(bodies->bodies);
     error = bodies->error;
+    whole = std::move(bodies->report);
   }
   const std::size_t crossings = surfaces.size() > 1 ? crossings_of(surfaces, progress) : 0;
   std::vector<Part> parts;
+  // Each with the parts it became, as first and last.
+  std::vector<std::pair<WrapReport, std::array<std::size_t, 2>>> of_parts;
   for (auto& surface : surfaces) {
+    std::optional<WrapReport> own;
     Result<std::vector<Part>> finished =
-        finish(std::move(surface), params, progress.portion(0.8, 1));
+        finish(std::move(surface), params, own, progress.portion(0.8, 1));
     if (!finished) return finished.error();
+    if (own) of_parts.push_back({*std::move(own), {parts.size(), parts.size() + finished->size()}});
     for (Part& part : *finished) {
       part.chord_error = std::max(part.chord_error, error);
       parts.push_back(std::move(part));
@@ -203,6 +215,11 @@ Result<std::vector<Part>> parts_of(Triangles triangles, const std::string& name,
   }
   for (std::size_t k = 0; k < parts.size(); ++k)
     parts[k].name = name + (parts.size() > 1 ? " " + std::to_string(k + 1) : "");
+  if (whole) of_parts.push_back({*std::move(whole), {0, parts.size()}});
+  for (auto& [report, range] : of_parts) {
+    for (std::size_t k = range[0]; k < range[1]; ++k) report.bodies.push_back(parts[k].name);
+    wraps.push_back(std::move(report));
+  }
   if (parts.size() > 1) {
     notes.push_back("The file holds " + std::to_string(parts.size()) + " separate bodies.");
     if (crossings > 0) {
@@ -223,7 +240,8 @@ Error about(const std::filesystem::path& file, Error error) {
 }
 
 Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const LoadParams& params,
-                                   FileDiagnosis* diagnosis, const Progress& progress) {
+                                   FileDiagnosis* diagnosis, std::vector<WrapReport>& wraps,
+                                   const Progress& progress) {
   auto soup = read_stl(file, progress.portion(0, 0.2, "Reading STL"));
   if (!soup) return soup.error();
   for (auto& facet : *soup) {
@@ -241,14 +259,15 @@ Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const Load
                 params.unit == 1 && guess_unit(diagonal_of(triangles.points)) != "mm"
                     ? ", which makes the part small; is it in another?"
                     : ".");
-  auto parts = parts_of(std::move(triangles), file.stem().string(), params, {unit},
+  auto parts = parts_of(std::move(triangles), file.stem().string(), params, {unit}, wraps,
                         progress.portion(0.4, 1, "Closing"));
   if (!parts) return about(file, parts.error());
   return parts;
 }
 
 Result<std::vector<Part>> load_step(const std::filesystem::path& file, const LoadParams& params,
-                                    FileDiagnosis* diagnosis, const Progress& progress) {
+                                    FileDiagnosis* diagnosis, std::vector<WrapReport>& wraps,
+                                    const Progress& progress) {
   StepContent content;
   const Result<void> done = read_step_in_child(file, params, progress.portion(0, 0.9), content);
   if (diagnosis) {
@@ -277,7 +296,7 @@ Result<std::vector<Part>> load_step(const std::filesystem::path& file, const Loa
     if (body.refusal) notes.push_back(body.refusal->message + ".");
     Triangles rough =
         body.rough.facets.empty() ? triangles_of(body.part.surface) : std::move(body.rough);
-    auto made = parts_of(std::move(rough), body.part.name, params, std::move(notes), rest);
+    auto made = parts_of(std::move(rough), body.part.name, params, std::move(notes), wraps, rest);
     if (!made && body.refusal && made.error().code != Code::cancelled)
       return about(file, *body.refusal);
     if (!made) return about(file, made.error());
@@ -290,7 +309,8 @@ Result<std::vector<Part>> load_step(const std::filesystem::path& file, const Loa
 }
 
 Result<std::vector<Part>> load(const std::filesystem::path& file, const LoadParams& params,
-                               FileDiagnosis* diagnosis, const Progress& progress) {
+                               FileDiagnosis* diagnosis, std::vector<WrapReport>& wraps,
+                               const Progress& progress) {
   if (params.chord_tolerance && !(*params.chord_tolerance > 0)) {
     return Error{Code::usage, "the chord tolerance must be positive", "Give a length in mm."};
   }
@@ -304,9 +324,9 @@ Result<std::vector<Part>> load(const std::filesystem::path& file, const LoadPara
     return Error{Code::usage, "the angle tolerance and the unit must be positive", ""};
   }
   const std::string extension = extension_of(file);
-  if (extension == ".stl") return load_stl(file, params, diagnosis, progress);
+  if (extension == ".stl") return load_stl(file, params, diagnosis, wraps, progress);
   if (extension == ".step" || extension == ".stp")
-    return load_step(file, params, diagnosis, progress);
+    return load_step(file, params, diagnosis, wraps, progress);
   return Error{Code::bad_input,
                file.filename().string() + ": '" + extension + "' is no format of parts",
                "Lamella reads STEP (.step, .stp) and STL (.stl)."};
@@ -316,14 +336,16 @@ Result<std::vector<Part>> load(const std::filesystem::path& file, const LoadPara
 
 Result<std::vector<Part>> load_parts(const std::filesystem::path& file, const LoadParams& params,
                                      const Progress& progress) {
-  return load(file, params, nullptr, progress);
+  std::vector<WrapReport> wraps;
+  return load(file, params, nullptr, wraps, progress);
 }
 
 Inspection inspect_parts(const std::filesystem::path& file, const LoadParams& params,
                          const Progress& progress) {
   FileDiagnosis diagnosis;
-  Result<std::vector<Part>> parts = load(file, params, &diagnosis, progress);
-  return {std::move(diagnosis), std::move(parts)};
+  std::vector<WrapReport> wraps;
+  Result<std::vector<Part>> parts = load(file, params, &diagnosis, wraps, progress);
+  return {std::move(diagnosis), std::move(wraps), std::move(parts)};
 }
 
 }  // namespace lamella

@@ -7,6 +7,7 @@
 #include "core/base/result.h"
 #include "core/geometry/diagnosis.h"
 #include "core/geometry/surface.h"
+#include "core/geometry/wrap.h"
 
 namespace lamella {
 
@@ -36,9 +37,20 @@ struct LoadParams {
 Result<std::vector<Part>> load_parts(const std::filesystem::path& file,
                                      const LoadParams& params = {}, const Progress& progress = {});
 
-/// What a file holds as it is, and its bodies or why there are none.
+/// A wrap that replaced a surface: how far the two lie from each other, measured both ways.
+struct WrapReport {
+  std::vector<std::string> bodies;  ///< parts that it became
+  double spacing = 0;               ///< mm between the planes of its grid
+  Deviation to_file;                ///< from the wrap to the file's surface, away from holes
+  Deviation from_file;              ///< back
+  double bridged = 0;               ///< share of the wrap's area that closes holes
+  std::size_t specks = 0;           ///< shells smaller than two cells that were left out
+};
+
+/// What a file holds as it is, what was wrapped, and its bodies or why there are none.
 struct Inspection {
   FileDiagnosis diagnosis;
+  std::vector<WrapReport> wraps;
   Result<std::vector<Part>> parts;
 };
 /// `load_parts` with a diagnosis before any repair, which a refused file gets too.

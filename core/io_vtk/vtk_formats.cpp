@@ -1,5 +1,6 @@
 #include "core/io_vtk/vtk_formats.h"
 
+#include "core/io/read_in_child.h"
 #include "core/io_vtk/exodus.h"
 #include "core/io_vtk/vtu.h"
 
@@ -27,7 +28,12 @@ std::vector<MeshFormat> vtk_formats() {
   vtu.endings = {".vtu"};
   vtu.filling = vtu.metric = vtu.provenance = vtu.names.exact = true;
   vtu.write = plain(write_vtu);
-  vtu.read = [](const std::filesystem::path& file, const Progress&) { return read_vtu(file); };
+  // VTK and its netCDF believe the lengths that a damaged file states.
+  vtu.read = [](const std::filesystem::path& file, const Progress& progress) {
+    return read_in_child(
+        file, [](const std::filesystem::path& f, const Progress&) { return read_vtu(f); },
+        progress);
+  };
   MeshFormat exodus;
   exodus.name = "exodus";
   exodus.title = "Exodus II";
@@ -35,7 +41,9 @@ std::vector<MeshFormat> vtk_formats() {
   exodus.filling = exodus.metric = true;
   exodus.names = {.longest = 60, .shared = true};  // 80 with "filling "
   exodus.write = plain(write_exodus);
-  exodus.read = read_exodus;
+  exodus.read = [](const std::filesystem::path& file, const Progress& progress) {
+    return read_in_child(file, read_exodus, progress);
+  };
   return {vtu, exodus};
 }
 

@@ -1,7 +1,9 @@
 #include "core/mesh/interfaces.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "core/mesh/adjacency.h"
@@ -42,8 +44,18 @@ WithInterfaces<D> list_interfaces(const SimplexMesh<D>& mesh) {
     is_outer[f] = 0;
     listed[it->second] = f;
   }
-  std::int32_t faces = 0;
-  for (std::int32_t f : mesh.facet_face) faces = std::max(faces, f + 1);
+  std::set<std::int32_t> taken(mesh.facet_face.begin(), mesh.facet_face.end());
+  taken.insert(-1);
+  // A number above all others, or the least that is free where a file has used the largest.
+  const auto new_face = [&taken] {
+    std::int32_t face = *taken.rbegin();
+    if (face < std::numeric_limits<std::int32_t>::max())
+      ++face;
+    else
+      for (face = 0; taken.count(face) > 0;) ++face;
+    taken.insert(face);
+    return face;
+  };
   all.facets.clear();
   all.facet_group.clear();
   all.facet_face.clear();
@@ -59,12 +71,15 @@ WithInterfaces<D> list_interfaces(const SimplexMesh<D>& mesh) {
     if (const std::size_t f = listed[i]; f < mesh.facets.size())
       add(inner[i], mesh.facet_group[f], mesh.facet_face[f]);
   out.given = all.facets.size();
-  std::map<std::array<std::int32_t, 2>, std::int32_t> pairs;
+  std::map<std::array<std::int32_t, 2>, std::array<std::int32_t, 2>> pairs;  // group and face
   for (std::size_t i = 0; i < inner.size(); ++i) {
     if (listed[i] < mesh.facets.size()) continue;
-    const auto [it, added] = pairs.try_emplace(sides[i], static_cast<std::int32_t>(pairs.size()));
-    if (added) all.groups.push_back(mesh.bodies[sides[i][0]] + "|" + mesh.bodies[sides[i][1]]);
-    add(inner[i], static_cast<std::int32_t>(mesh.groups.size()) + it->second, faces + it->second);
+    const auto [it, added] = pairs.try_emplace(sides[i]);
+    if (added) {
+      it->second = {static_cast<std::int32_t>(all.groups.size()), new_face()};
+      all.groups.push_back(mesh.bodies[sides[i][0]] + "|" + mesh.bodies[sides[i][1]]);
+    }
+    add(inner[i], it->second[0], it->second[1]);
   }
   return out;
 }

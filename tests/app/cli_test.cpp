@@ -185,8 +185,17 @@ TEST_F(Cli, AnOpenBoxIsDiagnosedAndRepairedOnlyIfAllowed) {
   EXPECT_EQ(lines().at(0)["bodies"][0]["sound"], false);
   EXPECT_NE(err.find("3 open edges"), std::string::npos) << err;
   ASSERT_EQ(run("info --json --wrap-spacing 0.2 open.stl"), 0) << err;
-  EXPECT_EQ(lines().at(1)["phase"], "body");
-  EXPECT_NE(lines().at(1)["notes"].dump().find("Wrapped: within"), std::string::npos);
+  const json wrap = lines().at(1), body = lines().at(2);
+  EXPECT_EQ(wrap["phase"], "wrap");
+  EXPECT_EQ(wrap["bodies"], json::array({"open"}));
+  EXPECT_NEAR(wrap["spacing"], 0.2, 0.02);
+  // Both ways, and no farther than a cell; the farther one is what the body is accurate to.
+  const double to = wrap["to_file"]["distance"], from = wrap["from_file"]["distance"];
+  EXPECT_LT(std::max(to, from), wrap["spacing"].get<double>());
+  EXPECT_NEAR(body["chord_error"], std::max(to, from), 1e-9);
+  EXPECT_GT(wrap["bridged"], 0);
+  EXPECT_EQ(body["phase"], "body");
+  EXPECT_NE(body["notes"].dump().find("Wrapped: within"), std::string::npos);
 }
 
 TEST_F(Cli, APlateGetsItsLayersAndEveryFileAgrees) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/mesh/boundary.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/mesh/validate.h"
@@ -32,6 +34,17 @@ TEST(Interfaces, AreListedOnceInAGroupOfTheirBodies) {
   lists_what_is_not_listed<2>();
   lists_what_is_not_listed<3>();
   lists_what_is_not_listed<4>();
+}
+
+TEST(Interfaces, AFaceOfTheLargestNumberLeavesOthersToTheInterfaces) {
+  auto mesh = two_body_box<3>(4);
+  const std::int32_t largest = std::numeric_limits<std::int32_t>::max();
+  for (std::int32_t& face : mesh.facet_face) face = face == 0 ? 0 : largest;
+  const auto all = list_interfaces(mesh);
+  EXPECT_TRUE(validate(all.mesh).ok());
+  ASSERT_GT(all.mesh.facets.size(), all.outer);
+  for (std::size_t f = all.outer; f < all.mesh.facets.size(); ++f)
+    EXPECT_EQ(all.mesh.facet_face[f], 1) << "the least number that is free";
 }
 
 TEST(Interfaces, WhatIsListedKeepsItsGroupAndFace) {
