@@ -158,8 +158,7 @@ TEST_F(CliRun, TheManualNamesEverySubcommandAndOption) {
     for (std::size_t dash = 0; (dash = out.find("--", dash)) != std::string::npos; dash += 2) {
       // Options stand at the start of a line; further ones belong to descriptions.
       const std::size_t line = out.rfind('\n', dash) + 1;
-      if (out.compare(line, 3, "  -") != 0 || out.compare(dash, 6, "--help") == 0)
-        continue;
+      if (out.compare(line, 3, "  -") != 0 || out.compare(dash, 6, "--help") == 0) continue;
       std::string option = out.substr(dash, out.find_first_of(" ,\n[", dash) - dash);
       std::string as_roff;
       for (const char c : option) as_roff += c == '-' ? std::string("\\-") : std::string(1, c);
