@@ -229,17 +229,15 @@ void add_flow(CLI::App* f, FlowCommand& flow) {
   auto* correct =
       f->add_option(
            "--correct", flow.correct,
-           "Correct the metric of the mesh: by the gradient of the acceleration or of the "
-           "velocity (acceleration, velocity), by the strain rate (strain), by the velocity "
-           "and its curvature (combined), or by the "
-           "change of direction or the residual smoothed over the elements (direction, "
-           "residual, directional). Of a solver's result, without a gate: by the gradient "
-           "of any field (field:NAME), by an indicator to smooth (indicator:NAME), or by "
-           "a velocity as above (acceleration:NAME, strain:NAME, combined:NAME, direction:NAME)")
+           "Correct the metric of the mesh: by the gradient of the acceleration or of the velocity "
+           "(acceleration, velocity), by the strain rate (strain), by the velocity and its "
+           "curvature (combined), or by the change of direction or the residual smoothed over the "
+           "elements (direction, residual, directional). Of a solver's result, without a gate: by "
+           "the gradient of any field (field:NAME), by an indicator to smooth (indicator:NAME), or "
+           "by a velocity (acceleration:NAME, strain:NAME, combined:NAME, direction:NAME)")
           ->option_text("METHOD");
   auto* field = f->add_option("--field", flow.field_file,
-                              "VTU file of a solver's result with that field at its nodes or "
-                              "cells, on any mesh of the same body [the mesh to correct]")
+                              "VTU file of a solver that has it, on any mesh [the mesh itself]")
                     ->option_text("FILE")
                     ->needs(correct);
   f->add_option("--field-unit", flow.field_unit, "Its unit of length: mm, cm, m or inch [mm]")

@@ -1262,6 +1262,10 @@ rendu uniforme sur les éléments</translation>
         <source>%1 iterations; %2 of what enters is lost.</source>
         <translation>%1 itérations ; %2 de ce qui entre se perd.</translation>
     </message>
+    <message>
+        <source>Velocity and curvature</source>
+        <translation>Vitesse et courbure</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Forecaster</name>
@@ -1284,6 +1288,14 @@ rendu uniforme sur les éléments</translation>
     <message>
         <source>Without the sizes: %L1 nodes.</source>
         <translation>Sans les tailles : %L1 nœuds.</translation>
+    </message>
+    <message>
+        <source>At most about %L1 nodes and %L2 elements; meshing takes about %L3 MB.</source>
+        <translation>Au plus environ %L1 nœuds et %L2 éléments ; le maillage prend environ %L3 Mo.</translation>
+    </message>
+    <message>
+        <source>The flow is solved %1 times; before it: %L2 nodes.</source>
+        <translation>L’écoulement est résolu %1 fois ; avant lui : %L2 nœuds.</translation>
     </message>
 </context>
 <context>

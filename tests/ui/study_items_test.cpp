@@ -5,22 +5,16 @@
 #include <QDoubleSpinBox>
 #include <QLineEdit>
 #include <QListWidget>
-#include <QSignalSpy>
 #include <QSpinBox>
-#include <QTest>
 #include <QTreeView>
 #include <cmath>
 
 #include "core/base/atomic_file.h"
 #include "core/base/sha256.h"
-#include "core/cad/sample_parts.h"
 #include "core/project/project_file.h"
 #include "core/study/study_file.h"
-#include "tests/support/fake_services.h"
-#include "tests/support/temporary_folder.h"
-#include "ui/actions/actions.h"
+#include "tests/ui/window_fixture.h"
 #include "ui/commands/study_edits.h"
-#include "ui/main_window.h"
 #include "ui/models/study_model.h"
 #include "ui/panels/banner.h"
 #include "ui/panels/convergence_panel.h"
@@ -28,42 +22,16 @@
 #include "ui/panels/quality_panel.h"
 #include "ui/session/command_line.h"
 #include "ui/session/recovery.h"
-#include "ui/session/session.h"
-#include "ui/views/model_view.h"
-#include "ui/views/vtk_view.h"
 
 namespace lamella::ui {
 namespace {
 
 /// A window with a plate of 40 x 30 x 2 and runs that are made up.
-class StudyItemsTest : public testing::Test {
+class StudyItemsTest : public WindowFixture {
  protected:
-  StudyItemsTest() : window_(fake_.make()) {
-    fake_.step = std::chrono::milliseconds(10);
-    EXPECT_TRUE(write_sample("plate", folder_ / "plate.step"));
-    window_.show();
-    EXPECT_TRUE(QTest::qWaitForWindowExposed(&window_));
-    window_.open_files({QString::fromStdString((folder_ / "plate.step").string())});
-    EXPECT_TRUE(wait_idle());
-    QTest::qWait(50);
-  }
+  StudyItemsTest() { open_part("plate"); }
 
-  Session& session() { return window_.session(); }
-  const Study& study() { return session().study(); }
-  QAction* action(Act act) { return window_.actions()[act]; }
-  VtkView* view() { return window_.view().vtk_view(); }
-  bool wait_idle() {
-    return QTest::qWaitFor([this] { return session().activity() == Activity::idle; }, 20000);
-  }
   void click() { QTest::mouseClick(view(), Qt::LeftButton, {}, view()->rect().center()); }
-  void run() {
-    action(Act::run)->trigger();
-    ASSERT_TRUE(wait_idle());
-  }
-
-  test::TemporaryFolder folder_;
-  test::FakeServices fake_;
-  MainWindow window_;
 };
 
 TEST_F(StudyItemsTest, WhatIsRarelySetReachesTheStudyAndIsUndone) {

@@ -23,20 +23,19 @@ inline Result<void> set_table(std::string& page, const std::string& name,
 }
 
 /// The main function of a program that writes tables into validation.md: its folder, and that of
-/// the real parts, which may be left out.
+/// the real parts or what `second` says, which may be left out.
 template <class Regenerate>
-int write_tables(int argc, char** argv, const char* program, Regenerate&& regenerate) {
+int write_tables(int argc, char** argv, const char* program, Regenerate&& regenerate,
+                 const char* second =
+                     "[PARTS], the folder that holds validation.md and that of "
+                     "the CAD files") {
   if (argc != 2 && argc != 3) {
-    std::fprintf(
-        stderr,
-        "usage: %s FOLDER [PARTS], the folder that holds validation.md and that of the CAD "
-        "files\n",
-        program);
+    std::fprintf(stderr, "usage: %s FOLDER %s\n", program, second);
     return exit_code(Code::usage);
   }
-  std::optional<std::filesystem::path> cad;
-  if (argc == 3) cad = argv[2];
-  const Result<void> done = regenerate(argv[1], cad);
+  std::optional<std::filesystem::path> more;
+  if (argc == 3) more = argv[2];
+  const Result<void> done = regenerate(argv[1], more);
   if (done) return 0;
   std::fprintf(stderr, "%s %s\n", done.error().message.c_str(), done.error().hint.c_str());
   return exit_code(done.error().code);

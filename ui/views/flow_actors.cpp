@@ -65,17 +65,8 @@ struct FlowActors::Impl {
       set_color(*actor.GetProperty(), QColor(0x16, 0x1c, 0x24));
       return;
     }
-    const ColorMap map = sequential_map();
-    vtkNew<vtkLookupTable> table;
-    constexpr int entries = 256;
-    table->SetNumberOfTableValues(entries);
-    for (int k = 0; k < entries; ++k) {
-      const QColor c = map.at((k + 0.5) / entries);
-      table->SetTableValue(k, c.redF(), c.greenF(), c.blueF(), 1);
-    }
     const auto [low, high] = robust_range(field_values(state, ColorBy::speed));
-    table->SetRange(low, high);
-    mapper.SetLookupTable(table);
+    mapper.SetLookupTable(lookup_table({{}, low, high, sequential_map()}));
     mapper.UseLookupTableScalarRangeOn();
     mapper.SetScalarModeToUsePointFieldData();
     mapper.SelectColorArray(array_of(ColorBy::speed).name);
