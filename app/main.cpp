@@ -146,8 +146,8 @@ int play(ui::MainWindow& window, const Script& script) {
   }
   if (failed) return exit_code(Code::bad_input);
   bool saved = true;
-  const QStringList colors{"body",  "quality",  "thickness", "layers",   "filling",
-                           "speed", "pressure", "shear",     "indicator"};
+  const QStringList colors{"body", "quality", "thickness", "layers", "filling",
+                           "size", "speed",   "pressure",  "shear",  "indicator"};
   if (const auto color = colors.indexOf(script.color); color >= 0)
     window.view().set_color_by(ui::ColorBy(color));
   for (const auto& [name, act] :
@@ -165,6 +165,7 @@ int play(ui::MainWindow& window, const Script& script) {
   if (auto* tabs = window.findChild<QTabWidget*>()) tabs->setCurrentIndex(script.tab);
   if (!script.screenshot.isEmpty()) {
     wait_until([] { return true; });
+    if (ui::VtkView* view = window.view().vtk_view()) view->settle();
     saved = save(window.grab().toImage(), script.screenshot);
   }
   if (!script.section.isEmpty()) {
@@ -213,7 +214,7 @@ int main(int argc, char** argv) {
   option("flat", "the section cuts through elements");
   option("near", "brings what is within R of a point close", "X,Y,Z,R");
   option("color",
-         "body, quality, thickness, layers, filling, or of a flow speed, pressure, shear or "
+         "body, quality, thickness, layers, filling, size, or of a flow speed, pressure, shear or "
          "indicator",
          "FIELD");
   option("flow", "arrows, lines, levels: what of the flow is drawn", "LIST");

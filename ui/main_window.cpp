@@ -12,9 +12,11 @@
 #include <QToolBar>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <cmath>
 
 #include "ui/actions/actions.h"
+#include "ui/box_of.h"
 #include "ui/commands/study_edits.h"
 #include "ui/panels/banner.h"
 #include "ui/panels/convergence_panel.h"
@@ -298,8 +300,22 @@ void MainWindow::connect_actions() {
   const Actions& act = *actions_;
   connect(act[Act::open], &QAction::triggered, this, [this] { ask_open(false); });
   connect(act[Act::add], &QAction::triggered, this, [this] { ask_open(true); });
-  connect(act[Act::remove], &QAction::triggered, this,
-          [this] { session_->remove_item(session_->item()); });
+  connect(act[Act::remove], &QAction::triggered, this, [this] {
+    const Item item = session_->item();
+    if (item.kind != ItemKind::body || !session_->is_part(item.index))
+      return session_->remove_item(item);
+    const std::string name = session_->body(item.index).name;
+    banner_->show_message(
+        Banner::Kind::info,
+        tr("Remove %1 with its groups and sizes?").arg(QString::fromStdString(name)),
+        tr("This cannot be undone, and the mesh shown goes too. The file of the part stays."),
+        {{tr("Remove"), [this, name] {
+            const auto& parts = session_->parts();
+            const auto part = std::find_if(parts.begin(), parts.end(),
+                                           [&](const Part& p) { return p.name == name; });
+            if (part != parts.end()) session_->remove_part(int(part - parts.begin()));
+          }}});
+  });
   connect(act[Act::save], &QAction::triggered, this, [this] { save(false); });
   connect(act[Act::save_as], &QAction::triggered, this, [this] { save(true); });
   connect(act[Act::forecast], &QAction::triggered, forecaster_, &Forecaster::ask);
@@ -494,11 +510,7 @@ void MainWindow::add_size(Act kind) {
   const Part& body = session_->shapes()[static_cast<std::size_t>(part)];
   const auto& points = body.surface.points.empty() ? session_->hull().points : body.surface.points;
   if (points.empty()) return;
-  Vec<3> low = points.front(), high = low;
-  for (const Vec<3>& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const auto [low, high] = box_of(points);
   const Vec<3> middle = 0.5 * (low + high);
   const double reach = 0.15 * (high - low).norm();
   if (kind == Act::add_sphere)

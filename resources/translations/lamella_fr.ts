@@ -1525,6 +1525,10 @@ rendu uniforme sur les éléments</translation>
         <source>known once the flow is solved</source>
         <translation>connu une fois l&apos;écoulement résolu</translation>
     </message>
+    <message>
+        <source>Smallest size asked</source>
+        <translation>Plus petite taille demandée</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::LengthBox</name>
@@ -1937,6 +1941,18 @@ rendu uniforme sur les éléments</translation>
     <message>
         <source>Save it in a project?</source>
         <translation>L&apos;enregistrer dans un projet ?</translation>
+    </message>
+    <message>
+        <source>Remove %1 with its groups and sizes?</source>
+        <translation>Retirer %1 avec ses groupes et ses tailles ?</translation>
+    </message>
+    <message>
+        <source>This cannot be undone, and the mesh shown goes too. The file of the part stays.</source>
+        <translation>Cela ne peut pas être annulé, et le maillage affiché disparaît aussi. Le fichier de la pièce reste.</translation>
+    </message>
+    <message>
+        <source>Remove</source>
+        <translation>Retirer</translation>
     </message>
 </context>
 <context>
@@ -3175,6 +3191,10 @@ Les propriétés du maillage ont ses réglages.</translation>
     <message>
         <source>Flow indicator</source>
         <translation>Indicateur d&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>Size asked</source>
+        <translation>Taille demandée</translation>
     </message>
 </context>
 <context>

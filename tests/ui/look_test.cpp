@@ -1,10 +1,13 @@
 #include <QComboBox>
 #include <QLineEdit>
 #include <QSlider>
+#include <QSpinBox>
+#include <algorithm>
 
 #include "core/study/domain.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/panels/form.h"
+#include "ui/session/asked_sizes.h"
 #include "ui/session/wall_map.h"
 #include "ui/views/compare_view.h"
 
@@ -37,6 +40,64 @@ TEST_F(LookTest, WallsAreColoredByThicknessBeforeThereIsAMesh) {
   EXPECT_TRUE(walls.status().isEmpty());
   window_.view().set_color_by(ColorBy::body);
   EXPECT_TRUE(window_.view().scene()->legend().title.isEmpty());
+}
+
+TEST_F(LookTest, SizesAskedAreShownBeforeThereIsAMesh) {
+  open_part("plate");
+  window_.view().set_color_by(ColorBy::size);
+  const WallMap& walls = window_.view().walls();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.maps().empty(); }, 30000));
+  const auto range = [](const WallMap::Maps& maps) {
+    const auto& of = maps[0]->thickness;
+    const auto [low, high] = std::minmax_element(of.begin(), of.end());
+    return std::pair(*low, *high);
+  };
+  const auto wall = range(walls.maps());
+  // The wall over n, wherever the sizes are within their bounds.
+  session().select(0);
+  find<QSpinBox>("layers")->setValue(5);
+  EXPECT_NEAR(range(asked_sizes(session(), walls.maps())).second, wall.second / 5,
+              1e-9 * wall.second);
+  EXPECT_TRUE(window_.view().scene()->has(ColorBy::size));
+  const QImage natural = window_.view().picture();
+  // A correction is in force inside its shape, and never coarser outside.
+  Study study = session().study();
+  SizingObject object;
+  object.name = "near the gate";
+  object.shape = SphereShape{walls.maps()[0]->points[0], wall.first};
+  object.asks = SizeCorrection{.size = wall.first / 50};
+  study.sizing.push_back(object);
+  session().edit("size", study);
+  const auto maps = asked_sizes(session(), walls.maps());
+  EXPECT_NEAR(maps[0]->thickness[0], wall.first / 50, 1e-9 * wall.first);
+  for (std::size_t p = 0; p < maps[0]->thickness.size(); ++p)
+    EXPECT_LE(maps[0]->thickness[p], walls.maps()[0]->thickness[p] / 5 * (1 + 1e-9));
+  EXPECT_GT(difference(natural, window_.view().picture()), 0.01);
+  picture("sizes-asked");
+  // The mesh tells what its metric asks for.
+  run();
+  EXPECT_TRUE(window_.view().scene()->has(ColorBy::size));
+  EXPECT_TRUE(window_.view().scene()->legend().is_length);
+}
+
+TEST_F(LookTest, AViewThatMovesIsDrawnCoarserAndWellAtRest) {
+  open_part("plate");
+  run();
+  view()->look(Vec<3>(1, 1, -1), Vec<3>::UnitZ(), window_.view().bounds());
+  const QImage before = window_.view().picture();
+  QTest::keyClick(view(), Qt::Key_Left);
+  EXPECT_TRUE(view()->moving());
+  // A picture, like a click, never sees what is drawn in a hurry.
+  const QImage turned = window_.view().picture();
+  EXPECT_FALSE(view()->moving());
+  EXPECT_GT(difference(before, turned), 0.01);
+  QTest::keyClick(view(), Qt::Key_Plus);
+  EXPECT_TRUE(view()->moving());
+  // It comes to rest by itself.
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !view()->moving(); }));
+  const QImage at_rest = view()->grab().toImage();
+  QTest::qWait(100);
+  EXPECT_LT(difference(at_rest, view()->grab().toImage()), 1e-3);
 }
 
 TEST_F(LookTest, MeasuringWallsIsStoppedByEscapeAndByARun) {

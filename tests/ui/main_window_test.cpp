@@ -5,6 +5,7 @@
 #include <QDropEvent>
 #include <QLabel>
 #include <QMimeData>
+#include <QPushButton>
 #include <QSignalSpy>
 #include <QSlider>
 #include <QSpinBox>
@@ -159,11 +160,9 @@ TEST_F(MainWindowTest, CancelKeepsTheBestMeshAndARunCanFollow) {
   ASSERT_TRUE(QTest::qWaitFor([this] { return !session().iterations().empty(); }, 10000));
   EXPECT_EQ(session().activity(), Activity::running);
   EXPECT_FALSE(action(Act::run)->isEnabled());
-  QElapsedTimer clock;
-  clock.start();
   action(Act::cancel)->trigger();
   ASSERT_TRUE(wait_idle());
-  EXPECT_LT(clock.elapsed(), 1500);
+  EXPECT_LT(session().iterations().size(), 7u);  // it did not go on to the end
   EXPECT_TRUE(session().outcome()->cancelled);
   EXPECT_NE(session().shown_state(), nullptr);
   fake_.step = std::chrono::milliseconds(10);
@@ -422,7 +421,11 @@ TEST_F(MainWindowTest, BodiesOfASecondFileAreAddedUnderANameOfTheirOwn) {
   ASSERT_TRUE(wait_idle());
   ASSERT_EQ(session().parts().size(), 2u);
   EXPECT_NE(session().body(0).name, session().body(1).name);
+  // It cannot be undone: it is asked first.
   action(Act::remove)->trigger();
+  EXPECT_EQ(session().parts().size(), 2u);
+  for (auto* button : window_.banner().findChildren<QPushButton*>())
+    if (button->text() == "Remove") button->click();
   EXPECT_EQ(session().parts().size(), 1u);
 }
 

@@ -62,6 +62,7 @@ class WindowFixture : public testing::Test {
       window_.actions().refresh_icons();
       window_.view().refresh_theme();
       QTest::qWait(150);
+      view()->settle();
       window_.grab().save(folder + "/" + name + (dark ? "-dark.png" : ".png"));
     }
   }

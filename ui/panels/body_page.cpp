@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "ui/box_of.h"
 #include "ui/commands/study_edits.h"
 #include "ui/panels/form.h"
 #include "ui/panels/zone_form.h"
@@ -24,16 +25,9 @@ QString short_length(double mm) { return units::number(mm, 3); }
 
 QString size_text(const Part& part) {
   if (part.surface.points.empty()) return {};
-  Vec<3> low = Vec<3>::Zero();
-  Vec<3> high = Vec<3>::Zero();
-  if (!part.surface.points.empty()) low = high = part.surface.points.front();
-  for (const Vec<3>& p : part.surface.points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Vec<3> size = high - low;
+  const Box<3> box = box_of(part.surface.points);
   return BodyPage::tr("%1<br>Volume %2<br>%L3 faces, %L4 triangles")
-      .arg(units::size(size), units::volume(part.cad_volume))
+      .arg(units::size(box.hi - box.lo), units::volume(part.cad_volume))
       .arg(part.surface.faces.size())
       .arg(part.surface.facets.size());
 }

@@ -6,6 +6,7 @@
 #include "core/geometry/triangles.h"
 #include "core/study/report.h"
 #include "core/study/study_file.h"
+#include "ui/box_of.h"
 #include "ui/commands/edit_study.h"
 #include "ui/commands/study_edits.h"
 #include "ui/theme.h"
@@ -28,14 +29,8 @@ bool is_stl(const std::filesystem::path& file) {
 
 QString box_size(const ReferenceSurface<3>& surface) {
   if (surface.points.empty()) return {};
-  Vec<3> low = surface.points.front();
-  Vec<3> high = low;
-  for (const Vec<3>& p : surface.points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Vec<3> size = high - low;
-  return units::size(size);
+  const Box<3> box = box_of(surface.points);
+  return units::size(box.hi - box.lo);
 }
 
 /// A mesh of which no more than itself is known.

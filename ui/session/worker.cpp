@@ -2,7 +2,23 @@
 
 #include <cassert>
 
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
+
 namespace lamella::ui {
+namespace {
+
+/// The window is to be drawn whatever the job does, so the job, with the threads it starts, goes
+/// second where both want the processor.
+void go_second() {
+#ifdef __linux__
+  // 0 is the calling thread here, and lowering one's priority is always allowed.
+  setpriority(PRIO_PROCESS, 0, 10);
+#endif
+}
+
+}  // namespace
 
 Worker::Worker(QObject* parent) : QObject(parent) {
   timer_.setInterval(40);
@@ -27,6 +43,7 @@ void Worker::start(Job job) {
   paused_ = false;
   timer_.start();
   thread_ = std::jthread([this, job = std::move(job)](std::stop_token stop) {
+    go_second();
     const Progress progress(
         [this, stop](double fraction, std::string_view phase) {
           std::unique_lock lock(mutex_);

@@ -14,11 +14,16 @@ enum class ColorBy {
   thickness,
   layers,
   filling,
+  size,   // smallest, that is asked
   speed,  // of the flow, up to indicator
   pressure,
   shear,
   indicator
 };
+/// Known on the surfaces of the bodies before there is a mesh, once their walls are measured.
+constexpr bool of_walls(ColorBy field) {
+  return field == ColorBy::thickness || field == ColorBy::size;
+}
 constexpr bool of_flow(ColorBy field) { return field >= ColorBy::speed; }
 
 /// Colors at equal distances over [0, 1]; interpolated, or in bands of equal width.

@@ -54,6 +54,8 @@ CompareView::CompareView(Session& session, VtkView& main, QWidget* parent)
   overlay_->set_scale_visible(true);
   layout->addWidget(view_, 1);
   agreed_ = seen_by(*main.renderer()->GetActiveCamera());
+  connect(view_, &VtkView::moving_changed, this,
+          [this](bool on) { scene_->set_moving(on, view_->fast_triangles()); });
   link(*view_, main_);
   link(main_, *view_);
   connect(which_, &QComboBox::currentIndexChanged, this, &CompareView::follow_mesh);
@@ -68,11 +70,9 @@ void CompareView::link(VtkView& drawn, VtkView& other) {
   connect(&drawn, &VtkView::rendered, this, [this, &drawn, &other] {
     // Each has a camera of its own: what one does to the depth range must not call for the other.
     vtkCamera* from = drawn.renderer()->GetActiveCamera();
-    vtkCamera* to = other.renderer()->GetActiveCamera();
     if (const auto now = seen_by(*from); now != agreed_) {
       agreed_ = now;
-      to->DeepCopy(from);
-      other.update();
+      other.follow(drawn);
     }
     if (&drawn == view_ && scene_->set_pixel_size(view_->pixel_size())) view_->update();
   });

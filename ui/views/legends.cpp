@@ -28,6 +28,16 @@ Legend thickness_legend(std::vector<double> values) {
   return legend;
 }
 
+Legend size_legend(std::vector<double> values) {
+  // The smallest ones are few, and what it is about.
+  const auto low = std::min_element(values.begin(), values.end());
+  const double least = low == values.end() ? 0 : *low;
+  Legend legend = thickness_legend(std::move(values));
+  legend.low = std::min(legend.low, least);
+  legend.title = Texts::tr("Smallest size asked");
+  return legend;
+}
+
 Legend field_legend(ColorBy field, const MeshState& state, int layers_asked,
                     const std::string& body) {
   Legend legend;
@@ -42,6 +52,9 @@ Legend field_legend(ColorBy field, const MeshState& state, int layers_asked,
       legend = thickness_legend({t.begin() + 1, t.end()});
       break;
     }
+    case ColorBy::size:
+      legend = size_legend(field_values(state, field));
+      break;
     case ColorBy::layers: {
       // One band a layer, the one of n layers being the first good one.
       const int n = layers_asked;
@@ -72,6 +85,7 @@ Legend missing_legend(ColorBy field, bool meshed) {
   legend.title = of_flow(field)                ? flow_title(field)
                  : field == ColorBy::quality   ? Texts::tr("Quality c(T)")
                  : field == ColorBy::thickness ? Texts::tr("Wall thickness")
+                 : field == ColorBy::size      ? Texts::tr("Smallest size asked")
                  : field == ColorBy::layers    ? Texts::tr("Layers through the wall")
                                                : Texts::tr("Filling ratio");
   legend.missing = !meshed                     ? Texts::tr("known once the part is meshed")

@@ -12,8 +12,9 @@ namespace lamella::ui {
 Legend field_legend(ColorBy field, const MeshState& state, int layers_asked,
                     const std::string& body);
 
-/// The scale of wall thicknesses, mm.
+/// The scales of wall thicknesses and of smallest sizes, mm.
 Legend thickness_legend(std::vector<double> values);
+Legend size_legend(std::vector<double> values);
 
 /// Why nothing is colored by the field.
 Legend missing_legend(ColorBy field, bool meshed);

@@ -9,6 +9,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/metric/metric.h"
+#include "ui/views/mesh_skin.h"
+
 namespace lamella::ui {
 
 vtkSmartPointer<vtkPoints> make_points(const std::vector<Vec<3>>& from) {
@@ -51,6 +54,8 @@ FieldArray array_of(ColorBy field) {
     case ColorBy::body:
     case ColorBy::filling:
       break;
+    case ColorBy::size:
+      return {"size", false};
     case ColorBy::quality:
       return {"quality", true};
     case ColorBy::thickness:
@@ -80,6 +85,8 @@ bool has_field(const MeshState& state, ColorBy field) {
       return state.thickness.size() == nodes;
     case ColorBy::layers:
       return state.layers.size() == nodes;
+    case ColorBy::size:
+      return state.metric.size() == nodes;
     case ColorBy::filling:
       return state.filling && state.filling->first.size() == elements + 1;
     case ColorBy::speed:
@@ -103,6 +110,12 @@ std::vector<double> field_values(const MeshState& state, ColorBy field) {
   if (field == ColorBy::pressure) return of_nodes(state.flow->pressure);
   if (field == ColorBy::shear) return state.flow->shear;
   if (field == ColorBy::indicator) return state.flow->indicator;
+  if (field == ColorBy::size) {
+    std::vector<double> asked;
+    for (std::size_t n = 1; n < state.metric.size(); ++n)
+      asked.push_back(sizes<3>(state.metric[n])[0]);
+    return asked;
+  }
   std::vector<double> speed;
   if (field == ColorBy::speed)
     for (std::size_t n = 1; n < state.flow->velocity.size(); ++n)
@@ -214,6 +227,20 @@ vtkSmartPointer<vtkFloatArray> filling_bands(const Filling& filling, std::int32_
     bands->SetValue(f, !half ? (mixed ? 0.375F : 0.125F) : (mixed ? 0.625F : 0.875F));
   }
   return bands;
+}
+
+void add_sizes(const MeshState& state, vtkDataSetAttributes& points) {
+  const char* name = array_of(ColorBy::size).name;
+  auto* node = vtkIntArray::SafeDownCast(points.GetArray(node_array));
+  if (!node || points.GetArray(name)) return;
+  vtkNew<vtkFloatArray> array;
+  array->SetName(name);
+  array->SetNumberOfTuples(node->GetNumberOfTuples());
+  for (vtkIdType k = 0; k < node->GetNumberOfTuples(); ++k) {
+    const auto n = static_cast<std::size_t>(node->GetValue(k));
+    array->SetValue(k, n == 0 ? 0 : static_cast<float>(sizes<3>(state.metric[n])[0]));
+  }
+  points.AddArray(array);
 }
 
 std::pair<double, double> robust_range(std::vector<double> values) {

@@ -42,6 +42,10 @@ void add_fields(const MeshState& state, const std::vector<std::int32_t>& element
 /// Gives points that are all nodes, the virtual one too, the velocity of the flow if there is one.
 void add_velocity(const MeshState& state, vtkDataSetAttributes& points);
 
+/// Gives points that are `node_array` of the mesh the smallest size asked there: not among the
+/// fields above, since it takes a while.
+void add_sizes(const MeshState& state, vtkDataSetAttributes& points);
+
 /// Lines between CAD faces, sharp or smooth, and the sharp ones within.
 vtkSmartPointer<vtkPolyData> feature_data(const ReferenceSurface<3>& surface);
 

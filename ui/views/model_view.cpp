@@ -14,6 +14,7 @@
 #include "core/study/study_file.h"
 #include "ui/actions/actions.h"
 #include "ui/commands/study_edits.h"
+#include "ui/session/asked_sizes.h"
 #include "ui/session/session.h"
 #include "ui/session/wall_map.h"
 #include "ui/theme.h"
@@ -84,6 +85,8 @@ ModelView::ModelView(Session& session, Actions& actions, QWidget* parent)
     overlay_->add([this](QPainter& p) { size_tool_->paint(p); }, true);
     overlay_->add([this](QPainter& p) { picks_->paint(p); }, false);
     view_->set_mouse_filter([this](QMouseEvent* event) { return mouse(event); });
+    connect(view_, &VtkView::moving_changed, this,
+            [this](bool on) { scene_->set_moving(on, view_->fast_triangles()); });
     connect(view_, &VtkView::rendered, this, [this] {
       if (scene_->set_pixel_size(view_->pixel_size())) view_->update();
     });
@@ -131,21 +134,14 @@ void ModelView::connect_session() {
 }
 
 void ModelView::connect_actions() {
-  connect(actions_[Act::crinkle], &QAction::toggled, this, [this](bool on) {
-    if (!scene_) return;
-    each_scene([on](Scene& s) { s.set_crinkle(on); });
-    refresh();
-  });
-  connect(actions_[Act::edges], &QAction::toggled, this, [this](bool on) {
-    if (!scene_) return;
-    each_scene([on](Scene& s) { s.set_edges(on); });
-    refresh();
-  });
-  connect(actions_[Act::features], &QAction::toggled, this, [this](bool on) {
-    if (!scene_) return;
-    each_scene([on](Scene& s) { s.set_features(on); });
-    refresh();
-  });
+  for (const auto& [act, set] :
+       {std::pair(Act::crinkle, &Scene::set_crinkle), std::pair(Act::edges, &Scene::set_edges),
+        std::pair(Act::features, &Scene::set_features)})
+    connect(actions_[act], &QAction::toggled, this, [this, set = set](bool on) {
+      if (!scene_) return;
+      each_scene([&](Scene& s) { (s.*set)(on); });
+      refresh();
+    });
   for (const Act act : {Act::flow_arrows, Act::flow_lines, Act::flow_levels})
     connect(actions_[act], &QAction::toggled, this, [this] {
       if (!scene_) return;
@@ -265,6 +261,7 @@ void ModelView::follow_selection() {
 }
 
 std::optional<Picked> ModelView::pick(const QPointF& at) const {
+  view_->settle();
   const double ratio = view_->devicePixelRatioF();
   return scene_->pick(at.x() * ratio, (view_->height() - 1 - at.y()) * ratio);
 }
@@ -379,7 +376,8 @@ void ModelView::follow_study() {
     s.set_colors(colors);
     s.set_color_by(color_by(), layers, filled_by);
   });
-  walls_->want(color_by() == ColorBy::thickness && !session_.shown_state());
+  walls_->want(of_walls(color_by()) && !session_.shown_state());
+  if (of_walls(color_by()) && !session_.shown_state()) follow_walls();
   follow_cuts();
   follow_groups();
   follow_sizes();
@@ -453,7 +451,9 @@ void ModelView::follow_sizes() {
 
 void ModelView::follow_walls() {
   if (!scene_) return;
-  each_scene([this](Scene& s) { s.set_walls(walls_->maps()); });
+  const WallMap::Maps maps =
+      color_by() == ColorBy::size ? asked_sizes(session_, walls_->maps()) : walls_->maps();
+  each_scene([&](Scene& s) { s.set_walls(maps); });
   refresh();
 }
 
@@ -462,7 +462,7 @@ void ModelView::follow_mesh() {
   const bool had = scene_->bounds()[0] <= scene_->bounds()[1];
   picks_->forget();
   scene_->set_mesh(session_.shown_state(), session_.shown_faces());
-  walls_->want(color_by() == ColorBy::thickness && !session_.shown_state());
+  walls_->want(of_walls(color_by()) && !session_.shown_state());
   if (!session_.has_bodies()) follow_study();
   tool_->set_bounds(scene_->bounds());
   if (!had) look_isometric();
@@ -471,7 +471,7 @@ void ModelView::follow_mesh() {
 
 void ModelView::refresh() {
   Legend legend = scene_->legend();
-  if (!session_.shown_state() && color_by() == ColorBy::thickness && !walls_->status().isEmpty())
+  if (!session_.shown_state() && of_walls(color_by()) && !walls_->status().isEmpty())
     legend.missing = walls_->status();
   overlay_->set_legend(legend);
   overlay_->set_scale_visible(!session_.empty());
@@ -596,6 +596,7 @@ void ModelView::apply_sections() {
   if (section_pending_) return;
   // Many moves of the mouse in one turn of the event loop make one cut.
   section_pending_ = true;
+  view_->hurry();
   QTimer::singleShot(0, this, [this] {
     if (!section_pending_) return;
     section_pending_ = false;
@@ -686,6 +687,7 @@ QImage ModelView::picture() {
     each_scene([this](Scene& s) { s.set_sections(sections_); });
     refresh();
   }
+  view_->settle();
   overlay_->set_handle_visible(false);
   const QImage image = view_->grab().toImage();
   overlay_->set_handle_visible(true);

@@ -18,6 +18,7 @@
 #include <limits>
 
 #include "ui/theme.h"
+#include "ui/views/coarse_skin.h"
 #include "ui/views/flow_actors.h"
 #include "ui/views/legends.h"
 #include "ui/views/mesh_data.h"
@@ -43,6 +44,9 @@ struct Scene::Impl {
   vtkSmartPointer<vtkPolyData> skin;  // without cuts, made when first needed
   vtkNew<vtkActor> mesh_actor;
   vtkNew<vtkPolyDataMapper> mesh_mapper;
+  vtkSmartPointer<vtkPolyData> coarse;  // of what the mesh actor shows, made when first needed
+  vtkNew<vtkActor> coarse_actor;
+  vtkNew<vtkPolyDataMapper> coarse_mapper;
   vtkNew<vtkActor> mesh_lines;  // features, where there is no part to take them from
   vtkNew<vtkPolyDataMapper> mesh_lines_mapper;
   vtkNew<vtkActor> hull_lines;
@@ -57,15 +61,20 @@ struct Scene::Impl {
   bool edges = true;
   bool crinkle = true;
   bool features = true;
+  vtkIdType most_triangles = 0;      // while the camera moves; 0: it does not
   std::size_t shown = 0, whole = 0;  // elements drawn, and of `skin`
   Legend legend;
-  Legend wall_legend;  // of the parts
+  std::vector<double> wall_values;  // on all parts
   std::array<double, 6> bounds{1, -1, 1, -1, 1, -1};
 
   explicit Impl(vtkRenderer& r) : renderer(r), flow(r) {
     vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
     style_mesh(*mesh_actor, *mesh_mapper);
     renderer.AddActor(mesh_actor);
+    coarse_actor->SetMapper(coarse_mapper);
+    coarse_actor->SetProperty(mesh_actor->GetProperty());
+    coarse_actor->VisibilityOff();
+    renderer.AddActor(coarse_actor);
     style_lines(*mesh_lines, *mesh_lines_mapper);
     renderer.AddActor(mesh_lines);
     style_lines(*hull_lines, *hull_mapper);
@@ -83,7 +92,7 @@ struct Scene::Impl {
   bool has(ColorBy field) const {
     if (field == ColorBy::body) return true;
     if (!state)
-      return field == ColorBy::thickness &&
+      return of_walls(field) &&
              std::any_of(parts.begin(), parts.end(), [](auto& p) { return p.wall_map != nullptr; });
     return has_field(*state, field) && (field != ColorBy::filling || filled_region() >= 0);
   }
@@ -154,9 +163,8 @@ struct Scene::Impl {
       line->SetLineWidth(outlined ? 3.2F : 1.6F);
       parts[k].surface->GetProperty()->SetEdgeVisibility(false);
     }
-    mesh_actor->SetVisibility(state != nullptr);
+    show_mesh();
     mesh_lines->SetVisibility(state != nullptr && parts.empty() && features);
-    mesh_actor->GetProperty()->SetEdgeVisibility(edges && !sees_lines());
     for (const Cut& cut : cuts) {
       cut.actor->SetVisibility(state != nullptr && !crinkle);
       cut.actor->GetProperty()->SetEdgeVisibility(edges);
@@ -205,19 +213,42 @@ struct Scene::Impl {
     recolor();
   }
 
+  /// The mesh, or something coarser while there is no time for all of it.
+  void show_mesh() {
+    const bool on = state != nullptr;
+    const vtkIdType all = on && mesh_mapper->GetNumberOfInputConnections(0) > 0
+                              ? mesh_mapper->GetInput()->GetNumberOfCells()
+                              : 0;
+    const bool fast = most_triangles > 0 && all > most_triangles;
+    if (fast && !coarse)
+      coarse = coarse_skin(*mesh_mapper->GetInput(), static_cast<int>(most_triangles / 2));
+    if (fast) {
+      // How it colors and what clips it; the shaders are each mapper's own.
+      coarse_mapper->vtkMapper::ShallowCopy(mesh_mapper);
+      coarse_mapper->SetInputData(coarse);
+    }
+    coarse_actor->SetVisibility(fast);
+    mesh_actor->SetVisibility(on && !fast);
+    mesh_actor->GetProperty()->SetEdgeVisibility(edges && !sees_lines() && !fast);
+  }
+
   /// Arrows and lines within the mesh, which lets them be seen.
   void draw_flow() {
     const bool on = skins && flow_look.any() && has(ColorBy::speed);
     flow.draw(on ? skins.grid() : nullptr, on ? state.get() : nullptr, sections, flow_look,
               color_by);
     mesh_actor->GetProperty()->SetOpacity(sees_lines() ? 0.3 : 1);
-    mesh_actor->GetProperty()->SetEdgeVisibility(edges && !sees_lines());
+    // What is drawn is closed: only through it can its far side be seen.
+    mesh_actor->GetProperty()->SetBackfaceCulling(!sees_lines());
+    show_mesh();
   }
   bool sees_lines() const { return flow_look.lines && has(ColorBy::speed); }
 
   /// Faces where the planes go through elements, each cut off by the other planes.
   void cut_through() {
     shown = 0;
+    if (color_by == ColorBy::size && has(color_by))
+      add_sizes(*state, *skins.grid()->GetPointData());
     for (Cut& cut : cuts) {
       mesh_mapper->AddClippingPlane(cut.clip);
       vtkNew<vtkCutter> cutter;
@@ -253,7 +284,8 @@ struct Scene::Impl {
     legend = {};
     if (color_by != ColorBy::body && !has(color_by) && (state || !parts.empty()))
       legend = missing_legend(color_by, state != nullptr);
-    if (!state && color_by == ColorBy::thickness && has(color_by)) legend = wall_legend;
+    if (!state && of_walls(color_by) && has(color_by))
+      legend = color_by == ColorBy::size ? size_legend(wall_values) : thickness_legend(wall_values);
     color_parts();
     if (!skins) return;
     // Shading gives a body its shape, but the colors of values must be those of the legend.
@@ -265,6 +297,8 @@ struct Scene::Impl {
     else if (color_by == ColorBy::body && flow_look.any() && has(ColorBy::speed))
       legend = field_legend(ColorBy::speed, *state, layers_asked, filled_by);
     color(*mesh_mapper, false);
+    coarse = nullptr;
+    show_mesh();
     for (const Cut& cut : cuts) {
       cut.actor->GetProperty()->SetAmbient(1);
       cut.actor->GetProperty()->SetDiffuse(0);
@@ -284,7 +318,7 @@ struct Scene::Impl {
 
   /// Parts in their colors, facets of groups in those of the groups, or by wall thickness.
   void color_parts() {
-    const bool by_wall = !state && color_by == ColorBy::thickness && has(color_by);
+    const bool by_wall = !state && of_walls(color_by) && has(color_by);
     for (std::size_t p = 0; p < parts.size(); ++p) {
       if (by_wall)
         show_walls(parts[p], legend);
@@ -320,6 +354,7 @@ struct Scene::Impl {
       mapper.SetScalarModeToUseCellData();
       mapper.InterpolateScalarsBeforeMappingOff();
     } else {
+      if (color_by == ColorBy::size && !inside) add_sizes(*state, *data.GetPointData());
       data.GetPointData()->SetActiveScalars(name);
       mapper.SetScalarModeToUsePointData();
       mapper.InterpolateScalarsBeforeMappingOn();
@@ -403,7 +438,7 @@ void Scene::set_walls(const std::vector<std::shared_ptr<const ThicknessMap>>& ma
     ui::set_walls(impl_->parts[k], map);
     if (map) all.insert(all.end(), map->thickness.begin(), map->thickness.end());
   }
-  impl_->wall_legend = thickness_legend(std::move(all));
+  impl_->wall_values = std::move(all);
   impl_->recolor();
 }
 
@@ -517,6 +552,9 @@ void Scene::set_color_by(ColorBy color_by, int layers_asked, const std::string& 
   impl_->filled_by = body;
   impl_->color_by = color_by;
   impl_->layers_asked = layers_asked;
+  // What cuts through elements has points between the nodes.
+  if (color_by == ColorBy::size && !impl_->crinkle && !impl_->cuts.empty())
+    return impl_->update_mesh();
   impl_->draw_flow();
   impl_->recolor();
 }
@@ -566,6 +604,11 @@ void Scene::set_edges(bool on) {
 void Scene::set_features(bool on) {
   impl_->features = on;
   impl_->update_visibility();
+}
+
+void Scene::set_moving(bool on, int most_triangles) {
+  impl_->most_triangles = on ? most_triangles : 0;
+  impl_->show_mesh();
 }
 
 bool Scene::has(ColorBy color_by) const { return impl_->has(color_by); }

@@ -40,8 +40,8 @@ class Scene {
   /// which takes a while.
   void set_mesh(std::shared_ptr<const MeshState> state,
                 std::shared_ptr<const MeshFaces> faces = nullptr);
-  /// Wall thickness on the surfaces of the parts, one a part or null, for ColorBy::thickness while
-  /// no mesh is shown.
+  /// Wall thickness on the surfaces of the parts, or the size asked there, one a part or null: for
+  /// the fields `of_walls` while no mesh is shown.
   void set_walls(const std::vector<std::shared_ptr<const ThicknessMap>>& maps);
   void set_visible(const std::vector<bool>& visible);
   /// Parts outlined in the accent color.
@@ -71,6 +71,8 @@ class Scene {
   void set_flow(const FlowLook& look);
   void set_edges(bool on);
   void set_features(bool on);
+  /// While the camera moves: a mesh of more triangles than that is drawn coarser, without edges.
+  void set_moving(bool on, int most_triangles);
 
   /// False where the mesh carries no such field.
   bool has(ColorBy color_by) const;

@@ -104,7 +104,18 @@ PartActors part_actors(const Part& part, const QColor& color) {
 
 void set_walls(PartActors& part, std::shared_ptr<const ThicknessMap> map) {
   if (map == part.wall_map) return;
+  // Sizes that are dragged change on the same triangles.
+  const bool same = map && part.wall_map && part.walls && map->points == part.wall_map->points &&
+                    map->facets == part.wall_map->facets &&
+                    part.walls->GetNumberOfPoints() == vtkIdType(map->points.size());
   part.wall_map = std::move(map);
+  if (same) {
+    vtkNew<vtkFloatArray> values;
+    values->SetName("wall thickness");
+    for (const double t : part.wall_map->thickness) values->InsertNextValue(static_cast<float>(t));
+    part.walls->GetPointData()->SetScalars(values);
+    return;
+  }
   part.walls = nullptr;
   if (!part.wall_map) return;
   vtkNew<vtkPolyData> data;

@@ -67,6 +67,7 @@ ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(a
   colors_->addItem(tr("Body"), int(ColorBy::body));
   colors_->addItem(tr("Quality c(T)"), int(ColorBy::quality));
   colors_->addItem(tr("Wall thickness"), int(ColorBy::thickness));
+  colors_->addItem(tr("Size asked"), int(ColorBy::size));
   colors_->addItem(tr("Layers measured"), int(ColorBy::layers));
   colors_->addItem(tr("Filling ratio"), int(ColorBy::filling));
   colors_->insertSeparator(colors_->count());

@@ -1,5 +1,7 @@
 #include "ui/views/vtk_view.h"
 
+#include <vtkActor.h>
+#include <vtkActorCollection.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkGenericOpenGLRenderWindow.h>
@@ -14,6 +16,7 @@
 #include <QOpenGLExtraFunctions>
 #include <QSurfaceFormat>
 #include <QWheelEvent>
+#include <algorithm>
 #include <cmath>
 
 #include "ui/theme.h"
@@ -36,9 +39,34 @@ void is_current(vtkObject*, unsigned long, void* client, void* call_data) {
 
 }  // namespace
 
+/// ms without a move after which the picture is drawn well.
+constexpr int rest_after = 180;
+/// Pixels that the processor draws several times a second.
+constexpr double fast_pixels = 500'000;
+
 struct VtkView::Vtk {
   vtkNew<vtkGenericOpenGLRenderWindow> window;
   vtkNew<vtkRenderer> renderer;
+  vtkMTimeType drawn = 0;
+  bool drawn_well = false;
+  int width = 1, height = 1;  // of the widget, device pixels
+
+  /// The picture has that share of the widget's pixels along a side.
+  void set_share(double share) {
+    window->SetSize(std::max(1, static_cast<int>(std::lround(share * width))),
+                    std::max(1, static_cast<int>(std::lround(share * height))));
+  }
+
+  /// When anything in the picture was changed last.
+  vtkMTimeType changed() {
+    vtkMTimeType last = std::max({renderer->GetMTime(), renderer->GetViewProps()->GetMTime(),
+                                  renderer->GetActiveCamera()->GetMTime()});
+    vtkActorCollection* actors = renderer->GetActors();
+    actors->InitTraversal();
+    while (vtkActor* actor = actors->GetNextActor())
+      last = std::max(last, actor->GetVisibility() ? actor->GetRedrawMTime() : actor->GetMTime());
+    return last;
+  }
 };
 
 vtkRenderer* VtkView::renderer() const { return vtk_->renderer; }
@@ -65,6 +93,7 @@ bool VtkView::supported() {
 
 VtkView::VtkView(QWidget* parent) : QOpenGLWidget(parent), vtk_(std::make_unique<Vtk>()) {
   setFormat(format());
+  setUpdateBehavior(PartialUpdate);  // a picture that still holds stays
   setMouseTracking(true);
   setAccessibleName(tr("Model"));
   setFocusPolicy(Qt::StrongFocus);
@@ -76,6 +105,9 @@ VtkView::VtkView(QWidget* parent) : QOpenGLWidget(parent), vtk_(std::make_unique
   vtk_->renderer->SetGradientBackground(true);
   refresh_theme();
   vtk_->renderer->GetActiveCamera()->ParallelProjectionOn();
+  rest_.setSingleShot(true);
+  rest_.setInterval(rest_after);
+  connect(&rest_, &QTimer::timeout, this, &VtkView::settle);
   vtkNew<vtkCallbackCommand> make;
   make->SetCallback(make_current);
   make->SetClientData(&context_);
@@ -119,9 +151,9 @@ void VtkView::initializeGL() {
   connect(context_, &QOpenGLContext::aboutToBeDestroyed, this, &VtkView::release_gl);
   const auto* name = reinterpret_cast<const char*>(context_->functions()->glGetString(GL_RENDERER));
   const QByteArray device(name ? name : "");
-  const bool software = device.contains("llvmpipe") || device.contains("softpipe");
-  vtk_->window->SetMultiSamples(software ? 0 : 8);
-  vtk_->renderer->SetUseFXAA(software);
+  software_ = device.contains("llvmpipe") || device.contains("softpipe");
+  vtk_->drawn = 0;
+  vtk_->window->SetMultiSamples(software_ ? 0 : 8);
   vtk_->window->SetForceMaximumHardwareLineWidth(1);
   vtk_->window->SetReadyForRendering(true);
   vtk_->window->SetOwnContext(0);
@@ -134,15 +166,25 @@ void VtkView::initializeGL() {
 
 void VtkView::resizeGL(int width, int height) {
   const double ratio = devicePixelRatioF();
-  vtk_->window->SetSize(static_cast<int>(std::lround(width * ratio)),
-                        static_cast<int>(std::lround(height * ratio)));
+  vtk_->width = static_cast<int>(std::lround(width * ratio));
+  vtk_->height = static_cast<int>(std::lround(height * ratio));
+  vtk_->set_share(1);
   sized_ = true;
+  vtk_->drawn = 0;
   if (fit_pending_) fit(pending_fit_);
 }
 
 void VtkView::paintGL() {
   if (drawing_ || !context_) return;
+  // What lies over the picture is painted more often than it changes.
+  const bool well = !hurried_;
+  if (vtk_->drawn == vtk_->changed() && (vtk_->drawn_well || !well)) return Q_EMIT rendered();
   drawing_ = true;
+  // Smooth edges take as long as all the rest where the processor draws.
+  vtk_->renderer->SetUseFXAA(software_ && well);
+  if (software_)
+    vtk_->set_share(
+        well ? 1 : std::min(1.0, std::sqrt(fast_pixels / (double(vtk_->width) * vtk_->height))));
   vtkOpenGLState* state = vtk_->window->GetState();
   state->Reset();
   state->Push();
@@ -155,7 +197,9 @@ void VtkView::paintGL() {
   const GLenum target = GL_COLOR_ATTACHMENT0;
   gl->glDrawBuffers(1, &target);
   gl->glDisable(GL_SCISSOR_TEST);
-  vtk_->window->BlitDisplayFramebuffer();
+  const int* drawn = vtk_->window->GetSize();
+  vtk_->window->BlitDisplayFramebuffer(0, 0, 0, drawn[0], drawn[1], 0, 0, vtk_->width, vtk_->height,
+                                       GL_COLOR_BUFFER_BIT, GL_LINEAR);
   // The window is opaque: what VTK left in alpha would let the desktop shine through.
   gl->glBindFramebuffer(GL_FRAMEBUFFER, defaultFramebufferObject());
   gl->glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
@@ -163,7 +207,45 @@ void VtkView::paintGL() {
   gl->glClear(GL_COLOR_BUFFER_BIT);
   gl->glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   drawing_ = false;
+  vtk_->drawn = vtk_->changed();
+  vtk_->drawn_well = well || !software_;
+  if (hurried_) rest_.start();  // counted from when the picture is there
   Q_EMIT rendered();
+}
+
+void VtkView::hurry() {
+  hurried_ = true;
+  rest_.start();
+}
+
+void VtkView::settle() {
+  if (!hurried_) return;
+  rest_.stop();
+  hurried_ = false;
+  vtk_->set_share(1);  // what asks for the size of the picture means all of it
+  if (moving_) {
+    moving_ = false;
+    Q_EMIT moving_changed(false);
+  }
+  update();
+}
+
+void VtkView::camera_moved() {
+  vtk_->renderer->ResetCameraClippingRange();
+  hurry();
+  if (!moving_) {
+    moving_ = true;
+    Q_EMIT moving_changed(true);
+  }
+  update();
+}
+
+void VtkView::follow(const VtkView& other) {
+  vtk_->renderer->GetActiveCamera()->DeepCopy(other.vtk_->renderer->GetActiveCamera());
+  if (other.moving_)
+    camera_moved();
+  else
+    update();
 }
 
 QPointF VtkView::project(const Vec<3>& point) const {
@@ -261,8 +343,7 @@ void VtkView::rotate(const QPointF& by) {
   camera->Azimuth(-by.x() * 0.4);
   camera->Elevation(by.y() * 0.4);
   camera->OrthogonalizeViewUp();
-  vtk_->renderer->ResetCameraClippingRange();
-  update();
+  camera_moved();
 }
 
 void VtkView::pan(const QPointF& by) {
@@ -276,8 +357,7 @@ void VtkView::pan(const QPointF& by) {
   position += shift;
   camera->SetFocalPoint(focal.data());
   camera->SetPosition(position.data());
-  vtk_->renderer->ResetCameraClippingRange();
-  update();
+  camera_moved();
 }
 
 void VtkView::zoom(double factor, const QPointF& at) {
@@ -298,8 +378,7 @@ void VtkView::zoom(double factor, const QPointF& at) {
   position += shift;
   camera->SetFocalPoint(focal.data());
   camera->SetPosition(position.data());
-  vtk_->renderer->ResetCameraClippingRange();
-  update();
+  camera_moved();
 }
 
 void VtkView::mousePressEvent(QMouseEvent* event) {

@@ -4,6 +4,7 @@
 #include <QPointF>
 #include <QPointer>
 #include <QRectF>
+#include <QTimer>
 #include <array>
 #include <functional>
 #include <memory>
@@ -52,13 +53,26 @@ class VtkView : public QOpenGLWidget {
   /// Background in the colors of the theme.
   void refresh_theme();
 
+  /// Draws what comes within the next moment fast rather than well, and once more at rest: for
+  /// whatever follows the mouse.
+  void hurry();
+  /// Ends that at once.
+  void settle();
+  /// Triangles that are drawn several times a second.
+  int fast_triangles() const { return software_ ? 60'000 : 3'000'000; }
+  /// The camera moves, or did so a moment ago.
+  bool moving() const { return moving_; }
+  /// Takes the camera of another view, as if it had been moved here.
+  void follow(const VtkView& other);
+
   /// Sees mouse events before the camera does; returns true to keep one for itself.
   using MouseFilter = std::function<bool(QMouseEvent*)>;
   void set_mouse_filter(MouseFilter filter) { filter_ = std::move(filter); }
 
  Q_SIGNALS:
-  /// A new picture was drawn.
+  /// The picture is up to date.
   void rendered();
+  void moving_changed(bool on);
 
  protected:
   void initializeGL() override;
@@ -72,6 +86,7 @@ class VtkView : public QOpenGLWidget {
 
  private:
   void release_gl();
+  void camera_moved();
   void zoom(double factor, const QPointF& at);
   void rotate(const QPointF& by);
   void pan(const QPointF& by);
@@ -83,6 +98,10 @@ class VtkView : public QOpenGLWidget {
   bool fit_pending_ = false;
   bool sized_ = false;
   bool drawing_ = false;
+  bool software_ = false;
+  bool hurried_ = false;
+  bool moving_ = false;
+  QTimer rest_;
   MouseFilter filter_;
   QPointF last_;
   Qt::MouseButton drag_ = Qt::NoButton;
