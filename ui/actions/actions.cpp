@@ -32,6 +32,8 @@ constexpr Row table[] = {
      QT_TRANSLATE_NOOP("lamella::ui::Actions", "Remove what is selected in the study")},
     {Act::export_mesh, QT_TRANSLATE_NOOP("lamella::ui::Actions", "&Export mesh…"), "export",
      "Ctrl+E", QT_TRANSLATE_NOOP("lamella::ui::Actions", "Write the shown mesh for a solver")},
+    {Act::save_report, QT_TRANSLATE_NOOP("lamella::ui::Actions", "Save repor&t…"), "", "",
+     QT_TRANSLATE_NOOP("lamella::ui::Actions", "Save the report of the run as PDF or HTML")},
     {Act::save_picture, QT_TRANSLATE_NOOP("lamella::ui::Actions", "Save &picture…"), "camera",
      "Ctrl+P",
      QT_TRANSLATE_NOOP("lamella::ui::Actions", "Save the 3D view as a picture of any resolution")},
