@@ -14,13 +14,17 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "app/window_services.h"
+#include "core/base/atomic_file.h"
 #include "core/base/version.h"
+#include "core/study/report_pictures.h"
 #include "ui/actions/actions.h"
 #include "ui/language.h"
 #include "ui/main_window.h"
+#include "ui/report_pdf.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 #include "ui/views/model_view.h"
@@ -66,33 +70,6 @@ bool save(const QImage& picture, const QString& file) {
   return false;
 }
 
-/// A place of the cut in a wall as thick as most, nearest to their middle; nothing where the mesh
-/// tells no thickness.
-struct Place {
-  Vec<3> center;
-  double thickness;  ///< mm
-};
-std::optional<Place> typical_wall(const MeshState& state, const ui::Section& section) {
-  if (state.thickness.size() != state.mesh.points.size()) return {};
-  std::vector<Place> places;
-  for (std::size_t n = 1; n < state.mesh.points.size(); ++n) {
-    const Vec<3>& x = state.mesh.points[n];
-    const double off = (x - section.origin).dot(section.normal);
-    if (state.thickness[n] > 0 && std::abs(off) < state.thickness[n] / 2)
-      places.push_back({x - off * section.normal, state.thickness[n]});
-  }
-  if (places.empty()) return {};
-  std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return a.thickness < b.thickness; });
-  const double usual = places[places.size() / 2].thickness;
-  std::erase_if(places, [&](const Place& p) { return std::abs(p.thickness / usual - 1) > 0.1; });
-  Vec<3> middle = Vec<3>::Zero();
-  for (const Place& p : places) middle += p.center / static_cast<double>(places.size());
-  return *std::min_element(places.begin(), places.end(), [&](const Place& a, const Place& b) {
-    return (a.center - middle).squaredNorm() < (b.center - middle).squaredNorm();
-  });
-}
-
 /// The cut as a whole, and beside it a wall from so near that its layers can be counted.
 QImage picture_of_section(ui::MainWindow& window) {
   ui::ModelView& model = window.view();
@@ -100,7 +77,7 @@ QImage picture_of_section(ui::MainWindow& window) {
   const auto state = window.session().shown_state();
   const auto section = model.section();
   if (whole.isNull() || !state || !section) return whole;
-  const std::optional<Place> place = typical_wall(*state, *section);
+  const std::optional<WallPlace> place = typical_wall(*state, section->origin, section->normal);
   if (!place) return whole;
 
   const Vec<3> up = std::abs(section->normal[2]) > 0.9 ? Vec<3>::UnitY() : Vec<3>::UnitZ();
@@ -183,11 +160,40 @@ int play(ui::MainWindow& window, const Script& script) {
   return saved ? 0 : exit_code(Code::io);
 }
 
+/// The report of a mesh (.html) or of a project, as PDF.
+int make_pdf(const QStringList& from, const QString& to) {
+  const auto write = [&]() -> Result<void> {
+    if (from.size() != 1)
+      return Error{Code::usage, "One report is made into a PDF at a time.",
+                   "Give a .report.html or a .lamella project."};
+    const std::string file = from.front().toStdString();
+    Result<std::string> html = std::string();
+    if (is_project(file)) {
+      Result<Project> project = open_project_head(file);
+      if (!project) return project.error();
+      html = project->report_html;
+    } else {
+      html = read_file(file);
+    }
+    if (!html) return html.error();
+    return ui::write_report_pdf(QString::fromStdString(*html), to);
+  };
+  const Result<void> written = write();
+  if (written) return 0;
+  std::fprintf(stderr, "lamella: %s %s\n", written.error().message.c_str(),
+               written.error().hint.c_str());
+  return exit_code(written.error().code);
+}
+
 }  // namespace
 }  // namespace lamella
 
 int main(int argc, char** argv) {
   using namespace lamella;
+  // A report needs no display.
+  if (std::any_of(argv, argv + argc,
+                  [](const std::string_view word) { return word.substr(0, 12) == "--report-pdf"; }))
+    qputenv("QT_QPA_PLATFORM", "offscreen");
   QSurfaceFormat::setDefaultFormat(ui::VtkView::format());
   QApplication application(argc, argv);
   QApplication::setApplicationName("lamella");
@@ -203,6 +209,9 @@ int main(int argc, char** argv) {
   parser.addPositionalArgument(
       "files", "a study (.lamella), STEP or STL parts, or one mesh (.msh, .vtu, .mesh, ..)",
       "[FILE...]");
+  parser.addOption({"report-pdf",
+                    "write the report of FILE, a .report.html or a .lamella, as PDF, and leave",
+                    "OUT.pdf"});
   const auto option = [&](const QString& name, const QString& text, const QString& value = {}) {
     QCommandLineOption o(name, text, value);
     o.setFlags(QCommandLineOption::HiddenFromHelp);
@@ -225,6 +234,8 @@ int main(int argc, char** argv) {
   option("screenshot", "picture of the window, then leave", "FILE");
   option("section", "picture of a section, then leave", "FILE");
   parser.process(application);
+  if (parser.isSet("report-pdf"))
+    return make_pdf(parser.positionalArguments(), parser.value("report-pdf"));
 
   Script script;
   script.run = parser.isSet("run");

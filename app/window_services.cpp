@@ -14,8 +14,9 @@ ui::Services window_services(const std::filesystem::path& sample_folder) {
   services.forecast = forecast_from;
   services.formats = mesh_formats();
   services.export_mesh = [](const std::filesystem::path& file, const MeshState& state,
-                            const Study& study) {
-    return export_mesh(file, state, study, inputs_of(study));
+                            const Study& study, const ExportOptions& options,
+                            const Progress& progress) {
+    return export_mesh(file, state, study, inputs_of(study), progress, options);
   };
   services.sample_part =
       [folder = sample_folder](const std::string& name) -> Result<std::filesystem::path> {

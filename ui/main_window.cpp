@@ -108,7 +108,9 @@ void MainWindow::make_body() {
   results_->addTab(quality, tr("Quality"));
   connect(quality, &QualityPanel::range_changed, this,
           [this, quality] { view_->set_quality_range(quality->range()); });
-  results_->addTab(new ReportPanel(*session_), tr("Report"));
+  auto* report = new ReportPanel(*session_);
+  connect(report, &ReportPanel::save_asked, this, &MainWindow::ask_report);
+  results_->addTab(report, tr("Report"));
   flow_ = new FlowPanel(*session_, *actions_);
   results_->addTab(flow_, tr("Flow"));
   overlaps_ = new OverlapPanel(*session_);
@@ -152,8 +154,9 @@ void MainWindow::make_menus() {
     }
   };
   constexpr Act line = Act::count;
-  fill(tr("&File"), {Act::open, Act::add, line, Act::save, Act::save_as, line, Act::export_mesh,
-                     Act::save_picture, Act::copy_command, line, Act::preferences, Act::quit});
+  fill(tr("&File"),
+       {Act::open, Act::add, line, Act::save, Act::save_as, line, Act::export_mesh,
+        Act::save_report, Act::save_picture, Act::copy_command, line, Act::preferences, Act::quit});
   menuBar()->actions().front()->menu()->insertMenu((*actions_)[Act::add], tools_->recent_menu());
   fill(tr("&Edit"), {Act::undo, Act::redo, line, Act::remove});
   fill(tr("&Study"),
@@ -275,6 +278,9 @@ void MainWindow::connect_session() {
   connect(session_, &Session::saved, this, [this](const QString& file) {
     statusBar()->showMessage(tr("Saved %1").arg(file), 4000);
   });
+  connect(session_, &Session::report_saved, this, [this](const QString& file) {
+    banner_->show_message(Banner::Kind::done, tr("Report written"), file);
+  });
   connect(&Units::get(), &Units::changed, session_, &Session::study_changed);
   connect(forecaster_, &Forecaster::changed, this, &MainWindow::update_status);
   connect(session_, &Session::exported, this, [this](const QString& file, const QString& notes) {
@@ -340,6 +346,7 @@ void MainWindow::connect_actions() {
   for (int a = int(Act::zone_ball); a <= int(Act::zone_half_space); ++a)
     connect(act[Act(a)], &QAction::triggered, this, [this, a] { add_body(Act(a)); });
   connect(act[Act::export_mesh], &QAction::triggered, this, &MainWindow::ask_export);
+  connect(act[Act::save_report], &QAction::triggered, this, &MainWindow::ask_report);
   connect(act[Act::save_picture], &QAction::triggered, this, &MainWindow::ask_picture);
   connect(act[Act::quit], &QAction::triggered, this, &QWidget::close);
   connect(act[Act::run], &QAction::triggered, this, [this] { start_run(); });
@@ -396,6 +403,7 @@ void MainWindow::update_actions() {
   act[Act::pause]->setEnabled(running);
   act[Act::pause]->setChecked(running && session_->paused());
   act[Act::export_mesh]->setEnabled(idle && session_->shown_state() != nullptr);
+  act[Act::save_report]->setEnabled(idle && session_->has_report());
   act[Act::undo]->setEnabled(session_->undo_stack()->canUndo());
   act[Act::redo]->setEnabled(session_->undo_stack()->canRedo());
   const QString undo = session_->undo_stack()->undoText();

@@ -72,6 +72,7 @@ class MainWindow : public QMainWindow {
   void start_run();
   void ask_export();
   void ask_picture();
+  void ask_report();
   void report_run();
 
   Session* session_;

@@ -5,9 +5,11 @@
 #include <QFileInfo>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QSettings>
 
 #include "ui/main_window.h"
 #include "ui/panels/banner.h"
+#include "ui/panels/export_dialog.h"
 #include "ui/panels/welcome.h"
 #include "ui/session/recent_files.h"
 #include "ui/session/session.h"
@@ -125,25 +127,28 @@ bool MainWindow::may_drop() {
 }
 
 void MainWindow::ask_export() {
-  const QString name = QString::fromStdString(session_->study().name) + ".msh";
-  QStringList kinds;
-  for (const MeshFormat& format : session_->services().formats.all()) {
-    QStringList patterns;
-    for (const std::string& ending : format.endings)
-      patterns << "*" + QString::fromStdString(ending);
-    kinds << QString("%1 (%2)").arg(QString::fromStdString(format.title), patterns.join(' '));
-  }
-  QString kind;
-  QString file = QFileDialog::getSaveFileName(this, tr("Export mesh"),
+  ExportDialog dialog(session_->services().formats, folder_,
+                      QString::fromStdString(session_->study().name), this);
+  if (dialog.exec() != QDialog::Accepted) return;
+  folder_ = QFileInfo(dialog.file()).absolutePath();
+  banner_->hide();
+  session_->export_mesh(dialog.file().toStdString(), dialog.options());
+}
+
+void MainWindow::ask_report() {
+  const QStringList kinds = {tr("PDF (*.pdf)"), tr("HTML page (*.html)")};
+  QSettings settings;
+  QString kind = kinds[settings.value("report/html").toBool() ? 1 : 0];
+  const QString name = QString::fromStdString(session_->study().name) + ".report";
+  QString file = QFileDialog::getSaveFileName(this, tr("Save report"),
                                               folder_.isEmpty() ? name : folder_ + "/" + name,
                                               kinds.join(";;"), &kind);
   if (file.isEmpty()) return;
-  // A name without an ending gets the one of the chosen kind.
-  if (const auto chosen = kinds.indexOf(kind); chosen >= 0 && QFileInfo(file).suffix().isEmpty())
-    file += QString::fromStdString(
-        session_->services().formats.all()[std::size_t(chosen)].endings.front());
+  const QString ending = QFileInfo(file).suffix().toLower();
+  if (ending != "pdf" && ending != "html") file += kind == kinds[1] ? ".html" : ".pdf";
+  settings.setValue("report/html", file.endsWith(".html"));
   banner_->hide();
-  session_->export_mesh(file.toStdString());
+  session_->save_report(file.toStdString());
 }
 
 void MainWindow::ask_picture() {

@@ -39,9 +39,9 @@ struct Services {
       forecast;
   /// Of meshes, as the dialogs offer them.
   MeshFormats formats;
-  /// Writes a mesh; the format follows the ending.
+  /// Writes a mesh.
   std::function<Result<ExportCertificate>(const std::filesystem::path&, const MeshState&,
-                                          const Study&)>
+                                          const Study&, const ExportOptions&, const Progress&)>
       export_mesh;
   /// Writes a part made by code and names the file: plate, ribbed_tray, curved_shell, t_junction
   /// or twisted_tube.

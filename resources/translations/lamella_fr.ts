@@ -418,6 +418,14 @@
         <source>Show lines of equal velocity on the section, or of equal pressure</source>
         <translation>Montrer les lignes de même vitesse sur la coupe, ou de même pression</translation>
     </message>
+    <message>
+        <source>Save repor&amp;t…</source>
+        <translation>Enregistrer le rappor&amp;t…</translation>
+    </message>
+    <message>
+        <source>Save the report of the run as PDF or HTML</source>
+        <translation>Enregistrer le rapport du calcul en PDF ou en HTML</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Banner</name>
@@ -1081,6 +1089,85 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
     <message>
         <source>Add a face to %1</source>
         <translation>Ajouter une face à %1</translation>
+    </message>
+</context>
+<context>
+    <name>lamella::ui::ExportDialog</name>
+    <message>
+        <source>Export mesh</source>
+        <translation>Exporter le maillage</translation>
+    </message>
+    <message>
+        <source>Format</source>
+        <translation>Format</translation>
+    </message>
+    <message>
+        <source>millimeters</source>
+        <translation>millimètres</translation>
+    </message>
+    <message>
+        <source>meters</source>
+        <translation>mètres</translation>
+    </message>
+    <message>
+        <source>Lengths in</source>
+        <translation>Longueurs en</translation>
+    </message>
+    <message>
+        <source>Browse…</source>
+        <translation>Parcourir…</translation>
+    </message>
+    <message>
+        <source>File</source>
+        <translation>Fichier</translation>
+    </message>
+    <message>
+        <source>Export</source>
+        <translation>Exporter</translation>
+    </message>
+    <message>
+        <source>This format knows no other unit</source>
+        <translation>Ce format ne connaît pas d&apos;autre unité</translation>
+    </message>
+    <message>
+        <source>The triangles of the boundary alone, without any names.</source>
+        <translation>Seulement les triangles de la frontière, sans aucun nom.</translation>
+    </message>
+    <message>
+        <source>bodies</source>
+        <translation>corps</translation>
+    </message>
+    <message>
+        <source>groups</source>
+        <translation>groupes</translation>
+    </message>
+    <message>
+        <source>filling ratios</source>
+        <translation>taux de remplissage</translation>
+    </message>
+    <message>
+        <source>metric</source>
+        <translation>métrique</translation>
+    </message>
+    <message>
+        <source>The file holds nodes and elements.</source>
+        <translation>Le fichier contient les nœuds et les éléments.</translation>
+    </message>
+    <message>
+        <source>In the file: %1.</source>
+        <translation>Dans le fichier : %1.</translation>
+    </message>
+    <message>
+        <source>Beside it, in %1.json and a .sol: %2.</source>
+        <translation>À côté, dans %1.json et un .sol : %2.</translation>
+    </message>
+    <message>
+        <source>The case is the folder that the file lies in.</source>
+        <translation>Le cas est le dossier où se trouve le fichier.</translation>
+    </message>
+    <message>
+        <source>%1 is there already. Replace it?</source>
+        <translation>%1 existe déjà. Le remplacer ?</translation>
     </message>
 </context>
 <context>
@@ -1867,10 +1954,6 @@ rendu uniforme sur les éléments</translation>
         <translation>Lancer sans limite</translation>
     </message>
     <message>
-        <source>Export mesh</source>
-        <translation>Exporter le maillage</translation>
-    </message>
-    <message>
         <source>PNG, %1 × %2 pixels (*.png)</source>
         <translation>PNG, %1 × %2 pixels (*.png)</translation>
     </message>
@@ -1953,6 +2036,22 @@ rendu uniforme sur les éléments</translation>
     <message>
         <source>Remove</source>
         <translation>Retirer</translation>
+    </message>
+    <message>
+        <source>Report written</source>
+        <translation>Rapport écrit</translation>
+    </message>
+    <message>
+        <source>PDF (*.pdf)</source>
+        <translation>PDF (*.pdf)</translation>
+    </message>
+    <message>
+        <source>HTML page (*.html)</source>
+        <translation>Page HTML (*.html)</translation>
+    </message>
+    <message>
+        <source>Save report</source>
+        <translation>Enregistrer le rapport</translation>
     </message>
 </context>
 <context>
@@ -2591,6 +2690,10 @@ Les barres croissent comme le logarithme du nombre</translation>
     <message>
         <source>Report</source>
         <translation>Rapport</translation>
+    </message>
+    <message>
+        <source>Save as PDF or HTML…</source>
+        <translation>Enregistrer en PDF ou en HTML…</translation>
     </message>
 </context>
 <context>

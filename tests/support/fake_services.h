@@ -47,6 +47,7 @@ inline std::shared_ptr<const MeshState> box_state(const Part& part, int iteratio
 struct FakeServices {
   std::chrono::milliseconds step{60};
   std::atomic<int> exports = 0;
+  ExportOptions export_options{};  // of the last one
   std::atomic<bool> mesh_is_damaged = false;
 
   ui::Services make() {
@@ -96,13 +97,18 @@ struct FakeServices {
       return outcome;
     };
     services.formats.add(own_formats());
-    services.export_mesh = [this](const std::filesystem::path& file, const MeshState&,
-                                  const Study&) -> Result<ExportCertificate> {
+    services.export_mesh = [this](const std::filesystem::path& file, const MeshState&, const Study&,
+                                  const ExportOptions& options,
+                                  const Progress&) -> Result<ExportCertificate> {
       if (!std::filesystem::is_directory(file.parent_path()))
         return Error{Code::io, "Cannot write " + file.string() + ".", "Choose another folder."};
       if (Result<void> written = write_file(file, "a mesh"); !written) return written.error();
       ++exports;
+      export_options = options;
       ExportCertificate proof;
+      proof.file = file.filename().string();
+      proof.format = "made up";
+      proof.agrees = true;
       proof.notes = {"a note of the export"};
       return proof;
     };

@@ -37,6 +37,8 @@ Actions::Actions(QObject* parent) : QObject(parent) {
        QT_TR_NOOP("Remove what is selected in the study")},
       {Act::export_mesh, QT_TR_NOOP("&Export mesh…"), "export", "Ctrl+E",
        QT_TR_NOOP("Write the shown mesh for a solver")},
+      {Act::save_report, QT_TR_NOOP("Save repor&t…"), "", "",
+       QT_TR_NOOP("Save the report of the run as PDF or HTML")},
       {Act::save_picture, QT_TR_NOOP("Save &picture…"), "camera", "Ctrl+P",
        QT_TR_NOOP("Save the 3D view as a picture of any resolution")},
       {Act::copy_command, QT_TR_NOOP("&Copy as command line"), "", "Ctrl+Shift+C",

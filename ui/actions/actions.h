@@ -14,6 +14,7 @@ enum class Act {
   save_as,
   remove,
   export_mesh,
+  save_report,
   save_picture,
   copy_command,
   preferences,

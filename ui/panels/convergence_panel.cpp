@@ -102,13 +102,22 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   follow_iterations();
 }
 
+std::vector<IterationRecord> ConvergencePanel::records() const {
+  const auto& iterations = session_.iterations();
+  // A project that was opened has its last mesh alone, and the records of all.
+  if (const auto& outcome = session_.outcome(); outcome && iterations.size() == 1)
+    return outcome->records;
+  std::vector<IterationRecord> records;
+  for (const Iteration& it : iterations) records.push_back(it.record);
+  return records;
+}
+
 QString ConvergencePanel::csv() const {
   QString text =
       "iteration,nodes,elements,layers_mean,layers_p5,conformity,quality_min,quality_mean,"
       "unit_edges,seconds,mixed,interface_error\n";
   const auto number = [](double x) { return QString::number(x, 'g', 12); };
-  for (const Iteration& it : session_.iterations()) {
-    const IterationRecord& r = it.record;
+  for (const IterationRecord& r : records()) {
     text += QStringList{QString::number(r.iteration), QString::number(r.nodes),
                         QString::number(r.elements),  number(r.layers.mean),
                         number(r.layers.p5),          number(r.conformity),
@@ -133,16 +142,16 @@ void ConvergencePanel::follow_iterations() {
   Series conformity{tr("conformity"), blue, {}};
   Series mixed{tr("mixed elements"), amber, {}};
   Series error{tr("interface error"), blue, {}};
-  for (const Iteration& it : session_.iterations()) {
-    const bool measured = it.record.layers.places > 0;
-    nodes.values.push_back(static_cast<double>(it.record.nodes));
-    mean.values.push_back(measured ? it.record.layers.mean : std::nan(""));
-    low.values.push_back(measured ? it.record.layers.p5 : std::nan(""));
-    conformity.values.push_back(it.record.conformity);
+  for (const IterationRecord& r : records()) {
+    const bool measured = r.layers.places > 0;
+    nodes.values.push_back(static_cast<double>(r.nodes));
+    mean.values.push_back(measured ? r.layers.mean : std::nan(""));
+    low.values.push_back(measured ? r.layers.p5 : std::nan(""));
+    conformity.values.push_back(r.conformity);
     // Without mixed elements every border lies on faces of the mesh.
-    const bool fuzzy = it.record.mixed > 0;
-    mixed.values.push_back(fuzzy ? static_cast<double>(it.record.mixed) : std::nan(""));
-    error.values.push_back(fuzzy ? it.record.interface_error : std::nan(""));
+    const bool fuzzy = r.mixed > 0;
+    mixed.values.push_back(fuzzy ? static_cast<double>(r.mixed) : std::nan(""));
+    error.values.push_back(fuzzy ? r.interface_error : std::nan(""));
   }
   const bool domain = session_.study().domain.has_value();
   nodes_->set_title(domain ? QString() : tr("Nodes"));
@@ -194,7 +203,14 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
 void ConvergencePanel::follow_shown() {
   const int shown = session_.shown();
   const int last = static_cast<int>(session_.iterations().size()) - 1;
-  for (Plot* plot : {nodes_, layers_, conformity_, error_}) plot->set_marked(shown);
+  int marked = shown;
+  if (const auto all = records(); shown >= 0 && all.size() != session_.iterations().size()) {
+    const int iteration = session_.iterations()[static_cast<std::size_t>(shown)].record.iteration;
+    const auto at = std::find_if(
+        all.begin(), all.end(), [&](const IterationRecord& r) { return r.iteration == iteration; });
+    marked = at == all.end() ? -1 : static_cast<int>(at - all.begin());
+  }
+  for (Plot* plot : {nodes_, layers_, conformity_, error_}) plot->set_marked(marked);
   const QSignalBlocker block(slider_);
   slider_->setEnabled(last > 0);
   back_->setEnabled(shown > 0);

@@ -2,6 +2,7 @@
 
 #include <QWidget>
 
+#include "core/study/record.h"
 #include "ui/views/plot.h"
 
 class QLabel;
@@ -25,6 +26,7 @@ class ConvergencePanel : public QWidget {
   void save(const QString& file);
 
  private:
+  std::vector<IterationRecord> records() const;
   void follow_iterations();
   void follow_shown();
   /// The layers of the selected body where they are known apart, else of all.

@@ -44,8 +44,11 @@ void ReportPanel::refresh() {
                         : outcome->converged ? tr("Converged")
                                              : tr("Stopped at the limit of iterations");
   QString html =
-      QString("<p><b>%1</b> <span style='color:%3'>%2</span></p>")
-          .arg(state, tr("in %1 s").arg(outcome->seconds, 0, 'f', 1), theme::soft_text.name());
+      QString(
+          "<p><b>%1</b> <span style='color:%3'>%2</span> &nbsp; <a style='color:%5' "
+          "href='save'>%4</a></p>")
+          .arg(state, tr("in %1 s").arg(outcome->seconds, 0, 'f', 1), theme::soft_text.name(),
+               tr("Save as PDF or HTML…"), theme::accent.name());
   html += "<table cellspacing='0'><tr style='color:" + theme::soft_text.name() + "'>";
   const QStringList titles{tr("Body"),         tr("Layers asked"),  tr("mean"),
                            tr("5 %"),          tr("median"),        tr("places reached"),
@@ -134,6 +137,7 @@ QString ReportPanel::places_html() const {
 }
 
 void ReportPanel::jump(const QUrl& link) {
+  if (link.toString() == "save") Q_EMIT save_asked();
   const QStringList words = link.toString().split(':');
   const auto& outcome = session_.outcome();
   if (words.size() != 3 || !outcome) return;

@@ -13,6 +13,9 @@ class ReportPanel : public QTextBrowser {
  public:
   explicit ReportPanel(Session& session, QWidget* parent = nullptr);
 
+ Q_SIGNALS:
+  void save_asked();
+
  private:
   void refresh();
   /// Of fuzzy interfaces: mixed elements and what the borders are worth.

@@ -268,7 +268,9 @@ void Session::open_study(const std::filesystem::path& file,
         Study made_of = *project_.mesh_study;
         arrange_bodies(made_of, *parts_);
         run_study_ = std::make_shared<const Study>(std::move(made_of));
-        add_iteration(iteration_of(opened->mesh, opened->faces));
+        Iteration iteration = iteration_of(opened->mesh, opened->faces);
+        take_report(iteration);
+        add_iteration(std::move(iteration));
       }
       Q_EMIT study_changed();
       if (opened->unread) report(*opened->unread);
@@ -283,7 +285,8 @@ void Session::save(const std::filesystem::path& file) {
   const auto state = shown_state();
   begin(Activity::saving,
         [this, file, state, study = study_, made_of = run_study_, outcome = outcome_,
-         opened = project_, opened_mesh = opened_mesh_](const Progress& progress) -> Worker::Done {
+         opened = project_, opened_mesh = opened_mesh_,
+         context = report_context(file)](const Progress& progress) -> Worker::Done {
           ProjectContent content;
           content.study = *study;
           content.copies = opened.copies;
@@ -292,18 +295,19 @@ void Session::save(const std::filesystem::path& file) {
             content.write_mesh = [&](const std::filesystem::path& vtu) -> Result<void> {
               // The names are those it was made with.
               Result<ExportCertificate> written =
-                  services_.export_mesh(vtu, *state, made_of ? *made_of : *study);
+                  services_.export_mesh(vtu, *state, made_of ? *made_of : *study, {}, {});
               if (!written) return written.error();
               return {};
             };
-            if (outcome && outcome->state == state) {
-              if (Result<Report> made = build_report(made_of ? *made_of : *study, *outcome, {})) {
+            if (state == opened_mesh) {
+              content.report_json = opened.report_json;
+              content.report_html = opened.report_html;
+            } else if (outcome && outcome->state == state) {
+              if (Result<Report> made =
+                      build_report(made_of ? *made_of : *study, *outcome, context)) {
                 content.report_json = report_json(*made);
                 content.report_html = report_html(*made);
               }
-            } else if (state == opened_mesh) {
-              content.report_json = opened.report_json;
-              content.report_html = opened.report_html;
             }
           }
           Result<std::vector<std::string>> written = save_project(content, file, progress);
@@ -489,6 +493,7 @@ void Session::cut_at(const Vec<3>& at, double radius, const QString& words) {
 void Session::clear_iterations() {
   outcome_.reset();
   run_study_.reset();
+  exports_.clear();
   iterations_.clear();
   shown_ = -1;
   Q_EMIT iterations_changed();
@@ -642,24 +647,6 @@ void Session::cancel() {
   if (activity_ == Activity::idle || worker_.cancelling()) return;
   worker_.cancel();
   Q_EMIT activity_changed();
-}
-
-void Session::export_mesh(const std::filesystem::path& file) {
-  const auto state = shown_state();
-  if (activity_ != Activity::idle || !state) return;
-  Q_EMIT logged(tr("Exporting %1").arg(text(file.string())));
-  begin(Activity::exporting, [this, state, file, study = study_](const Progress&) -> Worker::Done {
-    Result<ExportCertificate> written = services_.export_mesh(file, *state, *study);
-    return [this, written = std::move(written), file] {
-      set_activity(Activity::idle);
-      if (!written) return report(written.error());
-      Q_EMIT logged(tr("Wrote %1").arg(text(file.string())));
-      QStringList notes;
-      for (const std::string& note : written->notes) notes << text(note);
-      for (const QString& note : notes) Q_EMIT logged(note);
-      Q_EMIT exported(text(file.string()), notes.join('\n'));
-    };
-  });
 }
 
 void Session::edit(const QString& what, Study after, int merge) {

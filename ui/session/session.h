@@ -12,6 +12,7 @@
 
 #include "core/project/project_file.h"
 #include "core/study/domain.h"
+#include "core/study/report.h"
 #include "ui/services.h"
 #include "ui/session/item.h"
 #include "ui/session/mesh_faces.h"
@@ -146,7 +147,11 @@ class Session : public QObject {
   /// Cancels what is under way.
   void cancel();
   /// Writes the shown mesh.
-  void export_mesh(const std::filesystem::path& file);
+  void export_mesh(const std::filesystem::path& file, const ExportOptions& options = {});
+  /// Writes the report of the run, or of the project as it was opened: PDF by the ending .pdf, else
+  /// HTML.
+  void save_report(const std::filesystem::path& file);
+  bool has_report() const { return outcome_ && outcome_->state; }
 
   /// Changes the study as one undoable step called `what`. Steps one after another with the same
   /// `merge` (not 0) become one.
@@ -180,6 +185,7 @@ class Session : public QObject {
   /// `notes` are what a solver will complain about, one a line; mostly empty.
   void exported(const QString& file, const QString& notes);
   void saved(const QString& file);
+  void report_saved(const QString& file);
   /// A study file is open, with all its parts.
   void study_opened(const QString& file);
   void place_shown(const lamella::Vec<3>& at, double radius, const QString& text);
@@ -197,6 +203,10 @@ class Session : public QObject {
   /// Shapes and selection for the bodies as they are now. True where other bodies came.
   bool follow_bodies();
   void take_zone_shapes();
+  /// What a report tells besides the outcome; `file` is that of the study, if it has one.
+  ReportContext report_context(const std::filesystem::path& file) const;
+  /// What became of the run that a project was saved after, for its mesh.
+  void take_report(Iteration& iteration);
   void drop_overlaps();
   void remove_zone(int index);
   void set_activity(Activity activity);
@@ -228,6 +238,7 @@ class Session : public QObject {
   LoadParams read_with_;             // tolerances of the parts' surfaces
   std::vector<Iteration> iterations_;
   std::optional<Outcome> outcome_;
+  std::vector<std::pair<std::shared_ptr<const MeshState>, ExportCertificate>> exports_;
   std::shared_ptr<const Study> run_study_;
   Project project_;  // as it was opened; its copies of inputs are in use
   std::shared_ptr<const MeshState> opened_mesh_;
