@@ -268,6 +268,7 @@ void MainWindow::connect_session() {
   connect(session_, &Session::shown_changed, this, refresh);
   connect(session_, &Session::selection_changed, this, refresh);
   connect(session_, &Session::progressed, this, &MainWindow::show_progress);
+  connect(session_, &Session::run_finished, this, refresh);
   connect(session_, &Session::run_finished, this, &MainWindow::report_run);
   connect(session_, &Session::failed, this, [this](const QString& message, const QString& hint) {
     banner_->show_message(Banner::Kind::error, message, hint);

@@ -51,7 +51,7 @@ void lay_out(QString html, QTextDocument& document) {
   static const QRegularExpression style("<style>.*</style>",
                                         QRegularExpression::DotMatchesEverythingOption),
       plot("<svg .*?</svg>", QRegularExpression::DotMatchesEverythingOption),
-      picture("<img ([^>]*)width=\"\\d+\""), first("<tr><(td|th)>");
+      picture("<img [^>]*src=\"data:image/png;base64,([^\"]*)\">"), first("<tr><(td|th)>");
   html.remove(style);
   int plots = 0;
   for (auto found = plot.match(html); found.hasMatch(); found = plot.match(html)) {
@@ -60,7 +60,23 @@ void lay_out(QString html, QTextDocument& document) {
     html.replace(found.capturedStart(), found.capturedLength(),
                  QString("<img src=\"%1\" width=\"%2\">").arg(name).arg(kPage / 2 - 16));
   }
-  html.replace(picture, QString("<img \\1width=\"%1\"").arg(kPage));
+  // A document does not find the height that belongs to a width, and leaves room around a picture
+  // that stands in no cell.
+  int pictures = 0;
+  for (auto found = picture.match(html); found.hasMatch(); found = picture.match(html)) {
+    const QString name = QString("picture:%1").arg(pictures++);
+    const QImage image =
+        QImage::fromData(QByteArray::fromBase64(found.captured(1).toLatin1()), "PNG");
+    document.addResource(QTextDocument::ImageResource, QUrl(name), image);
+    const int height = image.isNull() ? 0 : kPage * image.height() / image.width();
+    html.replace(
+        found.capturedStart(), found.capturedLength(),
+        QString("<table><tr><td><img src=\"%1\" width=\"%2\" height=\"%3\"></td></tr></table>")
+            .arg(name)
+            .arg(kPage)
+            .arg(height));
+  }
+  html.replace("</span><span class=\"badge", "</span> \u00b7 <span class=\"badge");
   html.replace(first, "<tr><\\1 class=\"left\">");
   html.replace("<table class=\"tiles\"",
                "<table class=\"tiles\" border=\"1\" style=\"border-color:#dfe4e9\"");

@@ -6,6 +6,7 @@
 #include <QTextBrowser>
 
 #include "tests/ui/window_fixture.h"
+#include "ui/panels/banner.h"
 #include "ui/panels/convergence_panel.h"
 #include "ui/panels/export_dialog.h"
 #include "ui/panels/report_panel.h"
