@@ -163,7 +163,7 @@ void held_by_a_run(const char* when, const Services& services,
 void million_elements(const Services& services, const std::filesystem::path& folder, bool plate) {
   const auto state = million(plate);
   const auto file = folder / "million.vtu";
-  require(services.export_mesh(file, *state, Study{}).ok(), "writing the mesh");
+  require(services.export_mesh(file, *state, Study{}, {}, {}).ok(), "writing the mesh");
   MainWindow window(services);
   window.resize(1700, 1300);
   show(window);
@@ -193,14 +193,17 @@ void million_elements(const Services& services, const std::filesystem::path& fol
   std::sort(cuts.begin(), cuts.end());
   std::printf("crinkle cut dragged: %.3f s, at worst %.3f s\n", cuts[5], cuts.back());
 
+  QTest::qWait(400);  // the view is at rest
   std::vector<double> picks;
+  int met = 0;
   for (int k = 0; k < 10; ++k) {
     clock.restart();
-    window.view().scene()->pick(400 + 50 * k, 400);
+    met += window.view().scene()->pick(400 + 50 * k, 400).has_value();
     picks.push_back(static_cast<double>(clock.nsecsElapsed()) * 1e-6);
   }
   std::sort(picks.begin(), picks.end());
-  std::printf("pick: %.1f ms, at worst %.1f ms\n", picks[5], picks.back());
+  std::printf("pick: %.1f ms, at worst %.1f ms, %d of 10 met the mesh\n", picks[5], picks.back(),
+              met);
 }
 
 /// A run that hands over three plates of a million elements, edges on.

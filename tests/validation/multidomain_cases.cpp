@@ -1,5 +1,6 @@
 // Many bodies in one mesh (chapters 6 and 7): what fuzzy and exact interfaces reach, case by case.
-// Tables of resources/docs/validation.md, which holds the reading, and a mesh a case into a folder.
+// Tables of resources/docs/multidomain.md, which holds the reading, and a mesh a case into a
+// folder.
 
 #include <cmath>
 #include <cstdio>
@@ -237,7 +238,7 @@ Result<std::vector<Scene>> scenes(const std::optional<fs::path>& cad) {
 }
 
 Result<void> regenerate(const fs::path& folder, const std::optional<fs::path>& cad) {
-  const fs::path page_file = folder / "validation.md";
+  const fs::path page_file = folder / "multidomain.md";
   Result<std::string> page = read_file(page_file);
   if (!page) return page.error();
   Result<std::vector<Scene>> all = scenes(cad);

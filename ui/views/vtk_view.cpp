@@ -42,7 +42,7 @@ void is_current(vtkObject*, unsigned long, void* client, void* call_data) {
 /// ms without a move after which the picture is drawn well.
 constexpr int rest_after = 180;
 /// Pixels that the processor draws several times a second.
-constexpr double fast_pixels = 500'000;
+constexpr double fast_pixels = 350'000;
 
 struct VtkView::Vtk {
   vtkNew<vtkGenericOpenGLRenderWindow> window;
