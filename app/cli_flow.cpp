@@ -351,7 +351,7 @@ Result<void> check_usage(const FlowCommand& c) {
     return Error{Code::usage, "--correct knows no method \"" + c.correct + "\".",
                  "Use " + names +
                      "or of a field field:NAME, indicator:NAME, acceleration:NAME, strain:NAME, "
-                     "or direction:NAME."};
+                     "combined:NAME or direction:NAME."};
   }
   if (!field && c.gates.empty() && c.rates.empty())
     return Error{Code::usage, "flow needs a gate.", "Give --gate or --gate-rate."};

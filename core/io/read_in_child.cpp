@@ -31,6 +31,11 @@ void members(Io& io, C& content) {
     io.value(field.components);
     io.array(field.values);
   });
+  io.list(content.tensors, [&](auto& field) {
+    io.text(field.name);
+    io.value(field.of_nodes);
+    io.array(field.values);
+  });
   io.value(content.unit);
   io.text(content.provenance);
 }

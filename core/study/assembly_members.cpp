@@ -22,7 +22,7 @@ namespace lamella {
 namespace {
 
 constexpr int kCells = 6;            // of the first mesh of a box, along its longest side
-constexpr double kOfLayer = 0.25;    // size across a fuzzy border, of the thinnest layer
+constexpr double kOfLayer = 0.25;    // size across a fuzzy border, of the layer there
 constexpr double kOfLayerCut = 0.5;  // the same of a border that the mesh is cut along
 constexpr double kMinGuardShare = 0.3;
 

@@ -33,6 +33,8 @@ TEST_F(ReadInChild, AllThatWasReadComesBack) {
   sent.quality = {4, 5};
   sent.of_elements = made.fields.of_elements;
   sent.of_nodes = {{"velocity", 3, {1, 2, 3}}};
+  const Metric<3> stress = Vec<3>(1, 2, 3).asDiagonal();
+  sent.tensors = {{"stress", false, {stress}}};
   sent.unit = LengthUnit::m;
   sent.provenance = "{}";
   const Result<MeshContent> back = read_in_child(
@@ -55,6 +57,10 @@ TEST_F(ReadInChild, AllThatWasReadComesBack) {
   EXPECT_EQ(back->thickness, sent.thickness);
   EXPECT_EQ(back->layers, sent.layers);
   EXPECT_EQ(back->quality, sent.quality);
+  ASSERT_EQ(back->tensors.size(), 1u);
+  EXPECT_EQ(back->tensors[0].name, "stress");
+  EXPECT_FALSE(back->tensors[0].of_nodes);
+  EXPECT_EQ(back->tensors[0].values, sent.tensors[0].values);
   ASSERT_EQ(back->of_elements.size(), sent.of_elements.size());
   EXPECT_EQ(back->of_elements[2].name, sent.of_elements[2].name);
   EXPECT_EQ(back->of_elements[2].values, sent.of_elements[2].values);
