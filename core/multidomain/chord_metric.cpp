@@ -127,7 +127,8 @@ void ChordField::Level::add(const std::array<Vec<3>, 3>& facet, const Curved& as
 }
 
 void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
-                             double tolerance, double largest, int threads, Levels& levels) {
+                             double tolerance, double largest, int threads,
+                             const Progress& progress, Levels& levels) {
   // Pieces of the chains, as slim facets that a locator can hold.
   struct Piece {
     std::array<Vec<3>, 3> facet;
@@ -168,7 +169,7 @@ void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition
     return false;
   };
   std::vector<std::optional<Curved>> found(pieces.size());
-  parallel_each(pieces.size(), threads, {}, [&](std::size_t i) {
+  parallel_each(pieces.size(), threads, progress, [&](std::size_t i) {
     const auto& [facet, chain] = pieces[i];
     const Vec<3> middle = 0.5 * (facet[0] + facet[1]);
     if (partition.border(middle).distance > 0.1 * tolerance) return;  // hidden
@@ -201,7 +202,7 @@ void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition
 
 ChordField::ChordField(const Partition<3>& partition,
                        const std::vector<ReferenceSurface<3>>& surfaces, double tolerance,
-                       double growth, int threads)
+                       double growth, int threads, const Progress& progress)
     : growth_(growth) {
   Box<3> all;
   for (const auto& s : surfaces)
@@ -211,7 +212,9 @@ ChordField::ChordField(const Partition<3>& partition,
   for (std::size_t z = 0; z < surfaces.size(); ++z) {
     const ReferenceSurface<3>& s = surfaces[z];
     std::vector<std::optional<Curved>> found(s.facets.size());
-    parallel_each(found.size(), threads, {}, [&](std::size_t f) {
+    const auto count = static_cast<double>(surfaces.size()), at = static_cast<double>(z);
+    const Progress own = progress.portion(at / count, (at + 1) / count);
+    parallel_each(found.size(), threads, own.portion(0, 0.5), [&](std::size_t f) {
       const Vec<3>&a = s.points[s.facets[f][0]], &b = s.points[s.facets[f][1]],
             &c = s.points[s.facets[f][2]];
       const Vec<3> center = (a + b + c) / 3, normal = (b - a).cross(c - a);
@@ -226,7 +229,8 @@ ChordField::ChordField(const Partition<3>& partition,
           {s.points[s.facets[f][0]], s.points[s.facets[f][1]], s.points[s.facets[f][2]]},
           *found[f]);
     }
-    add_details(s, partition, tolerance, detail_share * largest, threads, levels);
+    add_details(s, partition, tolerance, detail_share * largest, threads, own.portion(0.5, 1),
+                levels);
   }
   for (auto& [power, level] : levels) {
     level.surface.faces.resize(1);

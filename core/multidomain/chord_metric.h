@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/geometry/locator.h"
 #include "core/metric/metric.h"
 #include "core/multidomain/partition.h"
@@ -21,11 +22,12 @@ Metric<3> with_chords(const Metric<3>& metric, const Partition<3>& partition, co
 /// The same for all that is curved in the surfaces of the zones, wherever the nearest border is: a
 /// fillet makes sizes small around it too. And for details, whose edges the mesh has to follow:
 /// along a feature edge from corner to corner sizes are at most its length, and between edges that
-/// have no corner in common at most their distance. Immutable and thread-safe.
+/// have no corner in common at most their distance. Immutable and thread-safe. Of one that was
+/// cancelled while it was made parts are missing.
 class ChordField {
  public:
   ChordField(const Partition<3>& partition, const std::vector<ReferenceSurface<3>>& surfaces,
-             double tolerance, double growth = 0.5, int threads = 0);
+             double tolerance, double growth = 0.5, int threads = 0, const Progress& progress = {});
   Metric<3> at(const Metric<3>& metric, const Vec<3>& x) const;
 
   /// Sizes along a border at a point of it, the smaller first.
@@ -48,7 +50,8 @@ class ChordField {
   /// By the power of two of the smallest size.
   using Levels = std::map<int, Level>;
   static void add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
-                          double tolerance, double largest, int threads, Levels& levels);
+                          double tolerance, double largest, int threads, const Progress& progress,
+                          Levels& levels);
 
   std::vector<Level> levels_;
   double growth_;

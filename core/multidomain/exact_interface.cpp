@@ -258,8 +258,10 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   cut_params.snap = params.snap;
   cut_params.threads = adapt_params.threads;
   const double tolerance = cut_params.tolerance;
-  const auto field = std::make_shared<const ChordField>(partition, surfaces, tolerance,
-                                                        chord_growth, adapt_params.threads);
+  const auto field =
+      std::make_shared<const ChordField>(partition, surfaces, tolerance, chord_growth,
+                                         adapt_params.threads, progress.portion(0, 0.02));
+  if (progress.cancelled()) return cancelled_error();
   const auto add_chords = [&](const Metric<3>& m, const Vec<3>& x) {
     return field->at(with_chords(m, partition, x, tolerance), x);
   };
@@ -267,7 +269,7 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   if (metric_at) chords_at = [&](const Vec<3>& x) { return add_chords(metric_at(x), x); };
   MetricField<3> chords(mesh.points.size(), Metric<3>::Identity());
   std::vector<char> finer(mesh.points.size(), 0);
-  if (!parallel_each(mesh.node_count(), adapt_params.threads, progress.portion(0, 0.05),
+  if (!parallel_each(mesh.node_count(), adapt_params.threads, progress.portion(0.02, 0.05),
                      [&](std::size_t i) {
                        const Vec<3>& x = mesh.points[i + 1];
                        const Metric<3> m = metric_at ? metric_at(x) : metric[i + 1];

@@ -74,7 +74,8 @@ class Cutter {
     return fit().bend(progress.portion(0.9, 1));
   }
 
-  CutMesh result(const SimplexMesh<3>& original) const {
+  /// Nothing when it was cancelled.
+  std::optional<CutMesh> result(const SimplexMesh<3>& original, const Progress& progress) const {
     CutMesh out;
     SimplexMesh<3>& mesh = out.mesh;
     mesh.points = mesh_.topo.points;
@@ -96,7 +97,7 @@ class Cutter {
       }
     }
     out.outer = mesh.facets.size();
-    add_interfaces(mesh);
+    if (!add_interfaces(mesh, progress)) return std::nullopt;
     out.features.assign(mesh_.features.begin(), mesh_.features.end());
     out.snapped = mesh_.moves;
     out.added = mesh.node_count() - old_nodes_;
@@ -106,9 +107,9 @@ class Cutter {
 
  private:
   /// The faces between regions, once slivers of a third one between them are gone.
-  void add_interfaces(SimplexMesh<3>& mesh) const {
+  bool add_interfaces(SimplexMesh<3>& mesh, const Progress& progress) const {
     const auto uses = face_uses<3>(mesh.elements, mesh.points.size());
-    give_slivers_away(uses, mesh);
+    if (!give_slivers_away(uses, mesh, progress)) return false;
     for_each_face<3>(uses, [&](std::size_t first, std::size_t last) {
       if (last - first != 2) return;
       const FaceUse<3>*low = &uses[first], *high = &uses[first + 1];
@@ -118,12 +119,14 @@ class Cutter {
       mesh.facet_group.push_back(0);
       mesh.facet_face.push_back(0);
     });
+    return true;
   }
 
   /// Where several borders meet, all nodes of an element may lie on each, and none of the regions
   /// there may have claimed it. Such islands of another region go to the neighbors with whom they
   /// share most.
-  void give_slivers_away(const std::vector<FaceUse<3>>& uses, SimplexMesh<3>& mesh) const {
+  bool give_slivers_away(const std::vector<FaceUse<3>>& uses, SimplexMesh<3>& mesh,
+                         const Progress& progress) const {
     std::vector<std::array<std::int32_t, 4>> beside(mesh.elements.size(), {-1, -1, -1, -1});
     for_each_face<3>(uses, [&](std::size_t first, std::size_t last) {
       if (last - first != 2) return;
@@ -131,10 +134,11 @@ class Cutter {
       beside[uses[first + 1].element][uses[first + 1].local] = uses[first].element;
     });
     std::vector<char> lost(mesh.elements.size());
-    parallel_each(lost.size(), params_.threads, {}, [&](std::size_t e) {
-      const Corners<3> p = mesh.corners(mesh.elements[e]);
-      lost[e] = partition_.region_of((p[0] + p[1] + p[2] + p[3]) / 4) != mesh.element_body[e];
-    });
+    if (!parallel_each(lost.size(), params_.threads, progress, [&](std::size_t e) {
+          const Corners<3> p = mesh.corners(mesh.elements[e]);
+          lost[e] = partition_.region_of((p[0] + p[1] + p[2] + p[3]) / 4) != mesh.element_body[e];
+        }))
+      return false;
     // What hangs on to its own region was counted to it on purpose.
     std::vector<std::int32_t> front;
     for (std::size_t e = 0; e < lost.size(); ++e)
@@ -165,6 +169,7 @@ class Cutter {
         any = true;
       }
     }
+    return true;
   }
 
   BorderFit fit() { return {mesh_, partition_, zone_, params_, phi_}; }
@@ -656,10 +661,11 @@ Result<CutMesh> cut_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   const int zones = partition.background();
   for (int k = 0; k < zones; ++k)
     if (!cutter.cut(k, surfaces[k],
-                    progress.portion(static_cast<double>(k) / zones,
-                                     static_cast<double>(k + 1) / zones, "cutting")))
+                    progress.portion(0.95 * k / zones, 0.95 * (k + 1) / zones, "cutting")))
       return cancelled_error();
-  return cutter.result(mesh);
+  std::optional<CutMesh> cut = cutter.result(mesh, progress.portion(0.95, 1));
+  if (!cut) return cancelled_error();
+  return std::move(*cut);
 }
 
 }  // namespace lamella
