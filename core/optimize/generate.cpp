@@ -11,9 +11,13 @@
 #include "core/optimize/certificate.h"
 #include "core/optimize/generate_peel.h"
 #include "core/optimize/generate_star.h"
+#include "core/optimize/generate_voids.h"
 
 namespace lamella {
 namespace {
+
+constexpr int kAttempts = 6;
+constexpr double kShareOfVoid = 1.0 / 60;  // of the time limit, for each void
 
 /// Processor time of this thread: what else the machine does must not decide which attempt ends.
 struct Clock {
@@ -227,40 +231,19 @@ SimplexMesh<D> to_mesh(const FoldedMesh<D>& t, const ReferenceSurface<D>& surfac
   return mesh;
 }
 
-}  // namespace
-
+/// The order of the nodes decides whether a hard surface stalls: several attempts, the first from
+/// the middle of the body, the others from nodes of the surface as in the thesis.
 template <int D>
-Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface, const GenerateParams& params,
-                                const Progress& progress) {
-  if (auto closed = check_boundary<D>(surface); !closed) return closed.error();
-  if (domain_measure<D>(surface) <= 0)
-    return Error{Code::bad_input, "The surface is wound inside out.", "Turn its facets."};
-  if constexpr (D == 3) {
-    // The certificate takes the surface for a mesh of the boundary: one that crosses itself would
-    // be filled twice where it overlaps, with every volume in order.
-    if (const SelfIntersections x = find_self_intersections(surface, progress); x.pairs > 0) {
-      std::ostringstream s;
-      s << "The surface crosses itself in " << x.pairs << " pairs of facets, the first near ("
-        << x.place[0] << ", " << x.place[1] << ", " << x.place[2] << ").";
-      return Error{Code::failed, s.str(), "A finer chord tolerance may set the facets apart."};
-    }
-  }
-  if (progress.cancelled()) return cancelled_error();
+Result<SimplexMesh<D>> portfolio(const ReferenceSurface<D>& surface, std::uint64_t seed,
+                                 int attempts, Clock::time_point deadline,
+                                 const Progress& progress) {
   const Bridged<D> boundary = bridge_shells<D>(surface);
-
-  // A portfolio: the order of the nodes decides whether a hard surface stalls. The first start is
-  // the middle of the body, the others are nodes of the surface as in the thesis.
-  constexpr int kAttempts = 6;
-  const auto seconds = [](double s) {
-    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
-  };
-  const auto deadline = Clock::now() + seconds(params.time_limit);
-  Random random(params.seed);
+  Random random(seed);
   std::optional<Locator<3>> locator;
   if constexpr (D == 3) locator.emplace(surface);
   double least = std::numeric_limits<double>::infinity();
   Error stalled{Code::failed, "Algorithm 2.1 was given no time.", "Raise its time limit."};
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; attempt < attempts; ++attempt) {
     if (progress.cancelled()) return cancelled_error();
     const auto now = Clock::now();
     if (now >= deadline) break;
@@ -269,7 +252,7 @@ Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface, const Genera
     // The first attempt is the best; of what is left half each, so that a slow stall does not use
     // up the others' time.
     const auto share = attempt == 0 ? 3 * (deadline - now) / 4 : (deadline - now) / 2;
-    const auto until = attempt + 1 == kAttempts ? deadline : now + share;
+    const auto until = attempt + 1 == attempts ? deadline : now + share;
     Attempt<D> work(boundary, surface, random.next(), until, progress);
     if (work.run(apex, attempt % 2 == 0 && locator ? &*locator : nullptr)) {
       SimplexMesh<D> mesh = to_mesh(work.mesh(), surface);
@@ -292,6 +275,46 @@ Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface, const Genera
     stalled = {Code::failed, s.str(), "Another seed, more time or a finer surface may succeed."};
   }
   return stalled;
+}
+
+}  // namespace
+
+template <int D>
+Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface, const GenerateParams& params,
+                                const Progress& progress) {
+  if (auto closed = check_boundary<D>(surface); !closed) return closed.error();
+  if (domain_measure<D>(surface) <= 0)
+    return Error{Code::bad_input, "The surface is wound inside out.", "Turn its facets."};
+  if constexpr (D == 3) {
+    // The certificate takes the surface for a mesh of the boundary: one that crosses itself would
+    // be filled twice where it overlaps, with every volume in order.
+    if (const SelfIntersections x = find_self_intersections(surface, progress); x.pairs > 0) {
+      std::ostringstream s;
+      s << "The surface crosses itself in " << x.pairs << " pairs of facets, the first near ("
+        << x.place[0] << ", " << x.place[1] << ", " << x.place[2] << ").";
+      return Error{Code::failed, s.str(), "A finer chord tolerance may set the facets apart."};
+    }
+  }
+  if (progress.cancelled()) return cancelled_error();
+  const auto clock_time = [](double t) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(t));
+  };
+  if constexpr (D == 3) {
+    std::vector<int> shell;
+    if (const int shells = number_shells<3>(surface.facets, shell); shells > 1) {
+      const auto until =
+          Clock::now() + clock_time(params.time_limit * (0.5 + kShareOfVoid * shells));
+      const FillSurface fill = [&](const ReferenceSurface<3>& part, int attempts,
+                                   const Progress& inner) {
+        return portfolio<3>(part, params.seed, attempts, until, inner);
+      };
+      Result<SimplexMesh<3>> mesh = generate_around_voids(surface, fill, progress.portion(0, 0.5));
+      if (!mesh && mesh.error().code == Code::cancelled) return mesh;
+      if (mesh && certify<3>(*mesh, surface).ok()) return mesh;
+    }
+  }
+  return portfolio<D>(surface, params.seed, kAttempts, Clock::now() + clock_time(params.time_limit),
+                      progress);
 }
 
 namespace {

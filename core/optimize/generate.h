@@ -24,7 +24,9 @@ class VolumeMesher {
 
 struct GenerateParams {
   std::uint64_t seed = 1;
-  double time_limit = 120;  ///< processor seconds after which it gives up, Code::failed
+  /// Processor seconds after which it gives up, Code::failed; with voids, which are set in one by
+  /// one before that, half of it and a 60th a void more.
+  double time_limit = 120;
 };
 
 /// Algorithm 2.1: the mesh of the domain bounded by `surface`, by topological optimization towards

@@ -13,7 +13,26 @@ namespace {
 template <int D>
 using Facet = std::array<NodeId, D>;
 
-/// Shell number of each facet, and their count.
+template <int D>
+bool disjoint(const Facet<D>& a, const Facet<D>& b) {
+  return std::none_of(a.begin(), a.end(),
+                      [&](NodeId n) { return std::find(b.begin(), b.end(), n) != b.end(); });
+}
+
+template <std::size_t N>
+bool even_permutation(std::array<NodeId, N> a, std::array<NodeId, N> b) {
+  bool even = true;
+  for (auto* x : {&a, &b})
+    for (std::size_t i = 1; i < N; ++i)
+      for (std::size_t j = i; j > 0 && (*x)[j] < (*x)[j - 1]; --j) {
+        std::swap((*x)[j], (*x)[j - 1]);
+        even = !even;
+      }
+  return even;
+}
+
+}  // namespace
+
 template <int D>
 int number_shells(const std::vector<Facet<D>>& facets, std::vector<int>& shell) {
   DisjointSets shells(facets.size());
@@ -36,26 +55,6 @@ int number_shells(const std::vector<Facet<D>>& facets, std::vector<int>& shell) 
     shell[f] = number.try_emplace(shells.root(f), static_cast<int>(number.size())).first->second;
   return static_cast<int>(number.size());
 }
-
-template <int D>
-bool disjoint(const Facet<D>& a, const Facet<D>& b) {
-  return std::none_of(a.begin(), a.end(),
-                      [&](NodeId n) { return std::find(b.begin(), b.end(), n) != b.end(); });
-}
-
-template <std::size_t N>
-bool even_permutation(std::array<NodeId, N> a, std::array<NodeId, N> b) {
-  bool even = true;
-  for (auto* x : {&a, &b})
-    for (std::size_t i = 1; i < N; ++i)
-      for (std::size_t j = i; j > 0 && (*x)[j] < (*x)[j - 1]; --j) {
-        std::swap((*x)[j], (*x)[j - 1]);
-        even = !even;
-      }
-  return even;
-}
-
-}  // namespace
 
 template <int D>
 Bridged<D> bridge_shells(const ReferenceSurface<D>& surface) {
@@ -193,6 +192,9 @@ Result<void> check_boundary(const ReferenceSurface<D>& surface) {
 template Result<void> check_boundary<2>(const ReferenceSurface<2>&);
 template Result<void> check_boundary<3>(const ReferenceSurface<3>&);
 template Result<void> check_boundary<4>(const ReferenceSurface<4>&);
+template int number_shells<2>(const std::vector<Facet<2>>&, std::vector<int>&);
+template int number_shells<3>(const std::vector<Facet<3>>&, std::vector<int>&);
+template int number_shells<4>(const std::vector<Facet<4>>&, std::vector<int>&);
 template Bridged<2> bridge_shells<2>(const ReferenceSurface<2>&);
 template Bridged<3> bridge_shells<3>(const ReferenceSurface<3>&);
 template Bridged<4> bridge_shells<4>(const ReferenceSurface<4>&);

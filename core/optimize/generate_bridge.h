@@ -14,6 +14,10 @@ struct Bridged {
   int shells = 0;
 };
 
+/// Shell number of each facet in `shell`, and their count.
+template <int D>
+int number_shells(const std::vector<std::array<NodeId, D>>& facets, std::vector<int>& shell);
+
 /// The star operator never joins what shares no face, so a body with cavities inside would stay in
 /// pieces for ever (the thesis assumes a connected boundary). Each further shell is therefore tied
 /// to the nearest part of the others by a prism of D simplices between two facets, well oriented

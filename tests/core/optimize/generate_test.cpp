@@ -76,6 +76,31 @@ TEST(Generate, MeshesABodyWithACavity) {
   expect_meshed<3>(test::joined(test::sphere(6, 1.0), test::sphere(5, 0.6, true)));
 }
 
+/// A void of a box, at a place.
+ReferenceSurface<3> slit(const Vec<3>& size, const Vec<3>& at) {
+  ReferenceSurface<3> s = test::box(1, 1, 1, size);
+  for (auto& p : s.points) p += at;
+  for (auto& f : s.facets) std::swap(f[0], f[1]);
+  return s;
+}
+
+/// Slits that divide the body nearly in two stall algorithm 2.1 on all shells at once: a star
+/// cannot turn a shell inside out.
+TEST(Generate, MeshesABodyFullOfSlits) {
+  ReferenceSurface<3> surface = test::box(3, 3, 3, Vec<3>::Constant(20.0 / 3));
+  for (int k = 0; k < 8; ++k)
+    surface = test::joined(surface, slit({19, 0.1, 18.9}, {0.4, 2 + 2.0 * k + 0.01 * k * k, 0.3}));
+  expect_meshed<3>(surface);
+}
+
+TEST(Generate, MeshesVoidsThatNearlyTouch) {
+  ReferenceSurface<3> surface = test::box(1, 1, 1, Vec<3>::Constant(10));
+  surface = test::joined(surface, slit({4, 4, 4}, {1, 1, 1}));
+  surface = test::joined(surface, slit({4, 0.05, 4}, {1, 5.002, 1}));
+  surface = test::joined(surface, slit({0.01, 8, 8}, {9.98, 0.5, 0.7}));
+  expect_meshed<3>(surface);
+}
+
 TEST(Generate, WorksFarFromTheOrigin) {
   auto surface = test::tee(3);
   for (auto& p : surface.points) p += Vec<3>(1e4, -2e4, 5e3);
