@@ -13,7 +13,7 @@ using flow::Velocities;
 constexpr std::size_t kPatience = 300;
 constexpr int kPasses = 15;
 /// Share of the flow that may be lost.
-constexpr double kBalance = 1e-7;
+constexpr double kBalance = 3e-7;
 
 template <int D>
 class Solver {
