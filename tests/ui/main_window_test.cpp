@@ -263,6 +263,13 @@ TEST_F(MainWindowTest, ColoringChangesThePictureAndBringsALegend) {
     EXPECT_FALSE(window_.view().scene()->legend().title.isEmpty());
     EXPECT_GT(difference(plain, window_.view().picture()), 0.05);
   }
+  // There and back again the colors are the same.
+  window_.view().set_color_by(ColorBy::quality);
+  const QImage quality = window_.view().picture();
+  window_.view().set_color_by(ColorBy::body);
+  EXPECT_LT(difference(plain, window_.view().picture()), 0.001);
+  window_.view().set_color_by(ColorBy::quality);
+  EXPECT_LT(difference(quality, window_.view().picture()), 0.001);
 }
 
 TEST_F(MainWindowTest, BodySettingsAreEditedAndUndone) {

@@ -462,6 +462,7 @@ void ModelView::follow_mesh() {
   if (!scene_) return;
   const bool had = scene_->bounds()[0] <= scene_->bounds()[1];
   picks_->forget();
+  if (session_.activity() == Activity::running) view_->hurry();  // well in a turn of its own
   scene_->set_mesh(session_.shown_state(), session_.shown_prepared());
   walls_->want(of_walls(color_by()) && !session_.shown_state());
   if (!session_.has_bodies()) follow_study();

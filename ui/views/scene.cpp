@@ -351,7 +351,7 @@ struct Scene::Impl {
     mapper.SetColorModeToMapScalars();
     if (color_by == ColorBy::filling) {
       auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
-      data.GetCellData()->SetScalars(filling_bands(*state->filling, filled_region(), *element));
+      show_values(data, *filling_bands(*state->filling, filled_region(), *element));
       mapper.SetScalarModeToUseCellData();
       mapper.InterpolateScalarsBeforeMappingOff();
     } else if (const auto [name, of_elements] = array_of(color_by); of_elements) {
@@ -402,7 +402,14 @@ struct Scene::Impl {
       const Bytes& bytes = color[inside || opened->GetValue(f) != 0 ? 1 : 0];
       std::copy(bytes.begin(), bytes.end(), out);
     }
-    data.GetCellData()->SetScalars(rgb);
+    show_values(data, *rgb);
+  }
+
+  /// Colors cells by these values. The active ones stay for the next time: SetScalars would throw
+  /// them away.
+  static void show_values(vtkPolyData& data, vtkDataArray& values) {
+    data.GetCellData()->AddArray(&values);
+    data.GetCellData()->SetActiveScalars(values.GetName());
   }
 };
 
