@@ -130,7 +130,6 @@ TEST(CoarseSkin, IsWhatASceneShowsWhileItMoves) {
   scene.set_edges(true);
   scene.set_moving(false, 1500);
   EXPECT_EQ(drawn_triangles(*view.renderer()), all);
-  picture().save("/tmp/t5/after.png"); with_edges.save("/tmp/t5/before.png");
   EXPECT_LT(looks_apart(picture(), with_edges), 0.001);
   EXPECT_GT(looks_apart(coarse, with_edges), 0.001);
   scene.set_moving(true, 100000);
