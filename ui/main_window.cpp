@@ -49,6 +49,7 @@ QString duration(double seconds) {
 QScrollArea* scrolled(QWidget* page, const QString& name) {
   auto* area = new QScrollArea;
   area->setWidget(page);
+  page->setAutoFillBackground(false);  // as setWidget made it
   area->setWidgetResizable(true);
   area->setFrameShape(QFrame::NoFrame);
   area->setAccessibleName(name);
