@@ -45,6 +45,7 @@ struct Script {
   QStringList flow;    ///< as option --flow
   QString select;      ///< group, sizing, cut or domain: the first one is selected
   int tab = 0;         ///< of the results
+  QString dialog;      ///< as option --dialog
   QString screenshot;  ///< picture of the window
   QString section;     ///< picture of the 3D view, cut open
   bool any() const { return run || !screenshot.isEmpty() || !section.isEmpty(); }
@@ -104,6 +105,21 @@ QImage picture_of_section(ui::MainWindow& window) {
   return both;
 }
 
+/// What an action opens beside the window, even where it is waited for.
+QImage picture_of_dialog(ui::MainWindow& window, ui::Act act) {
+  QImage image;
+  QTimer::singleShot(400, &window, [&] {
+    for (QWidget* top : QApplication::topLevelWidgets()) {
+      if (top == &window || !top->isVisible()) continue;
+      image = top->grab().toImage();
+      top->close();
+    }
+  });
+  window.actions()[act]->trigger();
+  wait_until([&] { return !image.isNull(); });
+  return image;
+}
+
 int play(ui::MainWindow& window, const Script& script) {
   ui::Session& session = window.session();
   bool failed = false;
@@ -143,7 +159,12 @@ int play(ui::MainWindow& window, const Script& script) {
   if (!script.screenshot.isEmpty()) {
     wait_until([] { return true; });
     if (ui::VtkView* view = window.view().vtk_view()) view->settle();
-    saved = save(window.grab().toImage(), script.screenshot);
+    const QStringList dialogs{"export", "preferences", "shortcuts", "journal", "search"};
+    constexpr ui::Act acts[] = {ui::Act::export_mesh, ui::Act::preferences, ui::Act::shortcuts,
+                                ui::Act::journal, ui::Act::search};
+    const auto dialog = dialogs.indexOf(script.dialog);
+    saved = save(dialog < 0 ? window.grab().toImage() : picture_of_dialog(window, acts[dialog]),
+                 script.screenshot);
   }
   if (!script.section.isEmpty()) {
     // All the window for the view, and a smooth cut: layers are counted on it.
@@ -230,6 +251,8 @@ int main(int argc, char** argv) {
   option("dark", "the dark theme");
   option("select", "group, sizing, cut or domain whose properties are shown", "KIND");
   option("tab", "tab of the results, from 0", "K");
+  option("dialog", "export, preferences, shortcuts, journal or search: that instead of the window",
+         "NAME");
   option("leave", "leave as soon as the window can be used");
   option("screenshot", "picture of the window, then leave", "FILE");
   option("section", "picture of a section, then leave", "FILE");
@@ -247,6 +270,7 @@ int main(int argc, char** argv) {
   script.flow = parser.value("flow").split(',');
   script.select = parser.value("select");
   script.tab = parser.value("tab").toInt();
+  script.dialog = parser.value("dialog");
   script.screenshot = parser.value("screenshot");
   script.section = parser.value("section");
 

@@ -15,9 +15,15 @@ function(packed file folder)
   add_custom_target(packed_${name} ALL DEPENDS ${made})
   install(FILES ${made} DESTINATION ${folder})
 endfunction()
-# Netgen's libraries lie in a folder of their own, which the installed programs must remember.
+# Netgen's libraries lie in a folder of their own, which the installed programs must remember; lintian
+# is told why.
+if(NGLIB_LIBRARY)
+  get_filename_component(NGLIB_FOLDER ${NGLIB_LIBRARY} DIRECTORY)
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/lintian-overrides DESTINATION ${share}/lintian/overrides
+          RENAME lamella)
+endif()
 if(TARGET lamella-cli)
-  set_target_properties(lamella-cli PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+  set_target_properties(lamella-cli PROPERTIES INSTALL_RPATH "${NGLIB_FOLDER}")
   install(TARGETS lamella-cli)
   set(completion ${CMAKE_BINARY_DIR}/lamella-cli.bash)
   add_custom_command(OUTPUT ${completion}
@@ -30,7 +36,7 @@ if(TARGET lamella-cli)
   packed(${manual} ${CMAKE_INSTALL_MANDIR}/man1)
 endif()
 if(TARGET lamella)
-  set_target_properties(lamella PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+  set_target_properties(lamella PROPERTIES INSTALL_RPATH "${NGLIB_FOLDER}")
   install(TARGETS lamella)
   packed(${CMAKE_CURRENT_LIST_DIR}/lamella.1 ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.desktop DESTINATION ${share}/applications)
@@ -51,8 +57,9 @@ set(CPACK_PACKAGE_CONTACT "Lamella maintainers <maintainers@lamella.invalid>")
 set(CPACK_PACKAGE_VENDOR Lamella)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "anisotropic tetrahedral meshes for injection molding")
 set(CPACK_PACKAGE_DESCRIPTION
-    "Lamella reads STEP and STL parts and makes tetrahedral meshes with n element layers\n\
-through every wall. lamella is the window, lamella-cli the batch program.")
+    "Lamella reads STEP and STL parts and makes tetrahedral meshes with n\n\
+element layers through every wall. lamella is the window, lamella-cli the\n\
+batch program.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR})
@@ -60,7 +67,6 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 if(NGLIB_LIBRARY)
-  get_filename_component(NGLIB_FOLDER ${NGLIB_LIBRARY} DIRECTORY)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${NGLIB_FOLDER})
 endif()
 # What is linked is found by dpkg-shlibdeps; the window falls back to another font without this one.

@@ -4,6 +4,7 @@
 #include <QLabel>
 #include <QMenuBar>
 #include <QProgressBar>
+#include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
@@ -42,6 +43,17 @@ namespace {
 QString duration(double seconds) {
   const int s = static_cast<int>(std::lround(seconds));
   return QString("%1:%2").arg(s / 60).arg(s % 60, 2, 10, QChar('0'));
+}
+
+/// The page, which the window may be too small for.
+QScrollArea* scrolled(QWidget* page, const QString& name) {
+  auto* area = new QScrollArea;
+  area->setWidget(page);
+  page->setAutoFillBackground(false);  // as setWidget made it
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setAccessibleName(name);
+  return area;
 }
 
 }  // namespace
@@ -92,7 +104,7 @@ void MainWindow::make_body() {
   stack_ = new QStackedWidget;
   welcome_ = new Welcome(*actions_);
   view_ = new ModelView(*session_, *actions_);
-  stack_->addWidget(welcome_);
+  stack_->addWidget(scrolled(welcome_, tr("Start")));
   stack_->addWidget(view_);
 
   auto* panel = new QFrame;
@@ -112,7 +124,7 @@ void MainWindow::make_body() {
   connect(report, &ReportPanel::save_asked, this, &MainWindow::ask_report);
   results_->addTab(report, tr("Report"));
   flow_ = new FlowPanel(*session_, *actions_);
-  results_->addTab(flow_, tr("Flow"));
+  results_->addTab(scrolled(flow_, tr("Flow")), tr("Flow"));
   overlaps_ = new OverlapPanel(*session_);
   results_->addTab(overlaps_, tr("Overlaps and gaps"));
   auto* log = new LogPanel;
@@ -307,22 +319,8 @@ void MainWindow::connect_actions() {
   const Actions& act = *actions_;
   connect(act[Act::open], &QAction::triggered, this, [this] { ask_open(false); });
   connect(act[Act::add], &QAction::triggered, this, [this] { ask_open(true); });
-  connect(act[Act::remove], &QAction::triggered, this, [this] {
-    const Item item = session_->item();
-    if (item.kind != ItemKind::body || !session_->is_part(item.index))
-      return session_->remove_item(item);
-    const std::string name = session_->body(item.index).name;
-    banner_->show_message(
-        Banner::Kind::info,
-        tr("Remove %1 with its groups and sizes?").arg(QString::fromStdString(name)),
-        tr("This cannot be undone, and the mesh shown goes too. The file of the part stays."),
-        {{tr("Remove"), [this, name] {
-            const auto& parts = session_->parts();
-            const auto part = std::find_if(parts.begin(), parts.end(),
-                                           [&](const Part& p) { return p.name == name; });
-            if (part != parts.end()) session_->remove_part(int(part - parts.begin()));
-          }}});
-  });
+  connect(act[Act::remove], &QAction::triggered, this,
+          [this] { session_->remove_item(session_->item()); });
   connect(act[Act::save], &QAction::triggered, this, [this] { save(false); });
   connect(act[Act::save_as], &QAction::triggered, this, [this] { save(true); });
   connect(act[Act::forecast], &QAction::triggered, forecaster_, &Forecaster::ask);
@@ -333,7 +331,8 @@ void MainWindow::connect_actions() {
   });
   connect(act[Act::solve_flow], &QAction::triggered, this, [this] {
     (*actions_)[Act::show_results]->setChecked(true);
-    results_->setCurrentWidget(flow_);
+    for (int k = 0; k < results_->count(); ++k)
+      if (results_->widget(k)->isAncestorOf(flow_)) results_->setCurrentIndex(k);
     banner_->hide();
     session_->solve_flow();
   });
@@ -416,7 +415,7 @@ void MainWindow::update_actions() {
   act[Act::compare]->setEnabled(session_->iterations().size() > 1);
   if (session_->iterations().size() < 2) act[Act::compare]->setChecked(false);
   act[Act::save_picture]->setEnabled(shown);
-  stack_->setCurrentWidget(shown ? static_cast<QWidget*>(view_) : welcome_);
+  stack_->setCurrentIndex(shown ? 1 : 0);
 }
 
 void MainWindow::update_title() {

@@ -2026,18 +2026,6 @@ rendu uniforme sur les éléments</translation>
         <translation>L&apos;enregistrer dans un projet ?</translation>
     </message>
     <message>
-        <source>Remove %1 with its groups and sizes?</source>
-        <translation>Retirer %1 avec ses groupes et ses tailles ?</translation>
-    </message>
-    <message>
-        <source>This cannot be undone, and the mesh shown goes too. The file of the part stays.</source>
-        <translation>Cela ne peut pas être annulé, et le maillage affiché disparaît aussi. Le fichier de la pièce reste.</translation>
-    </message>
-    <message>
-        <source>Remove</source>
-        <translation>Retirer</translation>
-    </message>
-    <message>
         <source>Report written</source>
         <translation>Rapport écrit</translation>
     </message>
@@ -2052,6 +2040,10 @@ rendu uniforme sur les éléments</translation>
     <message>
         <source>Save report</source>
         <translation>Enregistrer le rapport</translation>
+    </message>
+    <message>
+        <source>Start</source>
+        <translation>Démarrage</translation>
     </message>
 </context>
 <context>
@@ -2733,10 +2725,6 @@ Les barres croissent comme le logarithme du nombre</translation>
     <message>
         <source>%1: %2, %3 triangles on %4 faces, volume %5</source>
         <translation>%1 : %2, %3 triangles sur %4 faces, volume %5</translation>
-    </message>
-    <message>
-        <source>Removed %1</source>
-        <translation>%1 supprimé</translation>
     </message>
     <message>
         <source>Drop the domain</source>

@@ -4,6 +4,7 @@
 #include <QTest>
 #include <QTimer>
 #include <algorithm>
+#include <cstdio>
 #include <ctime>
 
 #include "app/window_services.h"
@@ -12,6 +13,7 @@
 #include "core/io/msh.h"
 #include "core/study/study_file.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/ui/looks_apart.h"
 #include "ui/actions/actions.h"
 #include "ui/main_window.h"
 #include "ui/session/forecaster.h"
@@ -26,38 +28,87 @@ bool wait_idle(Session& session) {
   return QTest::qWaitFor([&] { return session.activity() == Activity::idle; }, 120000);
 }
 
+/// What the walk opens: the real assembly where it lies beside the sources, else the sample plate
+/// twice.
+struct Assembly {
+  std::vector<std::filesystem::path> files;
+  std::string box;                      ///< the body that gets 3 layers
+  std::vector<std::string> left_out{};  ///< bodies that are not to be meshed
+  Act side = Act::view_iso;             ///< from where a click in the middle meets the box
+};
+
+Assembly assembly(const test::TemporaryFolder& folder) {
+  const std::filesystem::path real = LAMELLA_REAL_PARTS "/lego_3xaa_battery_case.step";
+  if (std::filesystem::exists(real))
+    return {{std::filesystem::canonical(real)},
+            "Case",
+            {"Bottom Tubes", "Top Studs", "3xAA-BC3AAW v7"},
+            Act::view_front};
+  const auto plate = folder / "plate.step";
+  EXPECT_TRUE(write_sample("plate", plate));
+  return {{plate, plate}, "plate"};
+}
+
 /// What a new user does on the first day, with the program itself below the window.
-TEST(FirstUse, FromTwoPartsToAnExportedMeshAndBack) {
+TEST(FirstUse, FromAnAssemblyToAnExportedMeshAndBack) {
   const test::TemporaryFolder folder;
-  const auto part = folder / "plate.step";
-  ASSERT_TRUE(write_sample("plate", part));
+  const Assembly walked = assembly(folder);
+  std::printf("through %s\n", walked.files[0].filename().c_str());
   std::string asked;
-  std::size_t elements = 0;
+  std::size_t elements = 0, bodies = 0, records = 0;
+  QImage seen;
+  // The same look before and after.
+  const auto look = [](MainWindow& window) {
+    window.view().vtk_view()->setFixedSize(480, 360);
+    QTest::qWait(100);
+    window.actions()[Act::view_front]->trigger();
+    window.view().set_color_by(ColorBy::layers);
+    window.session().select(0);
+    QTest::qWait(100);
+    return window.view().picture();
+  };
   {
     MainWindow window(window_services(folder.path()));
     window.show();
     ASSERT_TRUE(QTest::qWaitForWindowExposed(&window));
     Session& session = window.session();
     Actions& act = window.actions();
-    window.open_files({QString::fromStdString(part.string())});
-    ASSERT_TRUE(wait_idle(session));
-    window.open_files({QString::fromStdString(part.string())}, true);
-    ASSERT_TRUE(wait_idle(session));
-    ASSERT_EQ(session.parts().size(), 2u);
+    for (std::size_t k = 0; k < walked.files.size(); ++k) {
+      window.open_files({QString::fromStdString(walked.files[k].string())}, k > 0);
+      ASSERT_TRUE(wait_idle(session));
+    }
+    const auto number_of = [&](const std::string& name) {
+      for (std::size_t k = 0; k < session.parts().size(); ++k)
+        if (session.parts()[k].name == name) return static_cast<int>(k);
+      return -1;
+    };
+    for (const std::string& name : walked.left_out) {
+      session.select(number_of(name));
+      act[Act::remove]->trigger();
+      ASSERT_EQ(number_of(name), -1);
+    }
+    bodies = session.parts().size();
+    ASSERT_EQ(bodies, 2u);
 
-    // n = 3 for one body, the other coarse.
-    session.select(0);
+    // n = 3 for the box, the other coarse.
+    const int box = number_of(walked.box);
+    ASSERT_GE(box, 0);
+    session.select(box);
     window.findChild<QSpinBox*>("layers")->setValue(3);
-    session.select(1);
-    window.findChild<QSpinBox*>("layers")->setValue(2);
+    session.select(1 - box);
+    window.findChild<QSpinBox*>("layers")->setValue(1);
     window.findChild<QSpinBox*>("iterations")->setValue(1);
 
     // A gate, picked in the view, and a correction near it.
     VtkView* view = window.view().vtk_view();
+    act[walked.side]->trigger();
     QTest::qWait(50);
     act[Act::add_group]->trigger();
     QTest::mouseClick(view, Qt::LeftButton, {}, view->rect().center());
     ASSERT_EQ(session.study().groups.at(0).faces.size(), 1u);
+    if (walked.files.size() == 1) {  // the plates lie in one place
+      ASSERT_EQ(session.study().groups[0].body, walked.box);
+    }
     act[Act::correct_near]->setChecked(true);
     QTest::mouseClick(view, Qt::LeftButton, {}, view->rect().center());
     ASSERT_EQ(session.study().sizing.size(), 1u);
@@ -69,8 +120,10 @@ TEST(FirstUse, FromTwoPartsToAnExportedMeshAndBack) {
     ASSERT_EQ(session.activity(), Activity::running);
     ASSERT_TRUE(wait_idle(session));
     ASSERT_TRUE(session.outcome().has_value());
+    EXPECT_EQ(session.outcome()->bodies.at(std::size_t(box)).layers_asked, 3);
     const auto state = session.shown_state();
     elements = state->mesh.element_count();
+    records = session.outcome()->records.size();
     const auto& groups = state->mesh.groups;
     EXPECT_NE(std::find(groups.begin(), groups.end(), "gate"), groups.end());
 
@@ -78,9 +131,9 @@ TEST(FirstUse, FromTwoPartsToAnExportedMeshAndBack) {
     QTest::qWait(50);
     EXPECT_LT(window.view().scene()->shown_elements(), elements);
 
-    session.export_mesh(folder / "two.msh");
+    session.export_mesh(folder / "walk.msh");
     ASSERT_TRUE(wait_idle(session));
-    const auto back = read_msh(folder / "two.msh");
+    const auto back = read_msh(folder / "walk.msh");
     ASSERT_TRUE(back) << back.error().message;
     const auto written = summarize(state->mesh).groups, read = summarize(back->mesh).groups;
     ASSERT_EQ(written.size(), read.size());
@@ -88,24 +141,28 @@ TEST(FirstUse, FromTwoPartsToAnExportedMeshAndBack) {
       EXPECT_EQ(read[g].name, written[g].name);
       EXPECT_NEAR(read[g].measure, written[g].measure, 1e-9 * written[g].measure);
     }
-    session.save(folder / "two.lamella");
+    seen = look(window);
+    session.save(folder / "walk.lamella");
     ASSERT_TRUE(wait_idle(session));
-    EXPECT_FALSE(session.modified());
+    EXPECT_FALSE(session.modified() || session.mesh_unsaved());
     asked = study_to_json(session.study());
-    window.close();
+    ASSERT_TRUE(window.close());
   }
   MainWindow window(window_services(folder.path()));
   window.show();
   ASSERT_TRUE(QTest::qWaitForWindowExposed(&window));
   Session& session = window.session();
-  window.open_files({QString::fromStdString((folder / "two.lamella").string())});
+  window.open_files({QString::fromStdString((folder / "walk.lamella").string())});
   ASSERT_TRUE(wait_idle(session));
   EXPECT_EQ(study_to_json(session.study()), asked);
-  EXPECT_EQ(session.parts().size(), 2u);
+  EXPECT_EQ(session.parts().size(), bodies);
   ASSERT_NE(session.shown_state(), nullptr);
   EXPECT_EQ(session.shown_state()->mesh.element_count(), elements);
+  ASSERT_TRUE(session.outcome().has_value());
+  EXPECT_EQ(session.outcome()->records.size(), records);
   EXPECT_FALSE(session.outdated());
   EXPECT_TRUE(window.view().section().has_value());
+  EXPECT_LT(looks_apart(seen, look(window)), looks_alike);
   EXPECT_FALSE(session.modified());
 }
 

@@ -119,10 +119,14 @@ TEST_F(FlowTest, WithoutAGateTheBannerSaysWhatToDo) {
   session().remove_item({ItemKind::group, 0});
   action(Act::run)->trigger();
   ASSERT_TRUE(wait_idle());
+  EXPECT_FALSE(window_.banner().isVisible());
   action(Act::solve_flow)->trigger();
   ASSERT_TRUE(wait_idle());
   EXPECT_FALSE(session().shown_state()->flow);
   EXPECT_TRUE(window_.banner().isVisible());
+  EXPECT_TRUE(window_.banner().message().contains("gate"))
+      << window_.banner().message().toStdString();
+  EXPECT_FALSE(window_.banner().hint().isEmpty());
 }
 
 }  // namespace

@@ -11,12 +11,15 @@
 #include <QSpinBox>
 #include <QTest>
 #include <QTreeView>
+#include <algorithm>
 #include <fstream>
 
 #include "core/cad/sample_parts.h"
+#include "core/study/study_file.h"
 #include "tests/support/fake_services.h"
 #include "tests/support/temporary_folder.h"
 #include "ui/actions/actions.h"
+#include "ui/commands/study_edits.h"
 #include "ui/models/study_model.h"
 #include "ui/panels/banner.h"
 #include "ui/panels/length_box.h"
@@ -118,9 +121,14 @@ TEST_F(MainWindowTest, UnitOfAnStlIsToldAndCanBeChanged) {
   open("box.stl");
   EXPECT_TRUE(window_.banner().isVisible());
   EXPECT_TRUE(window_.banner().message().contains("30 × 20 × 4 mm"));
-  session().open({folder_ / "box.stl"}, false, 25.4);
+  const auto buttons = window_.banner().findChildren<QPushButton*>();
+  const auto inches = std::find_if(buttons.begin(), buttons.end(),
+                                   [](const QPushButton* b) { return b->text() == "Inches"; });
+  ASSERT_NE(inches, buttons.end());
+  (*inches)->click();
   ASSERT_TRUE(wait_idle());
   EXPECT_NEAR(session().parts()[0].cad_volume, 30 * 20 * 4 * std::pow(25.4, 3), 1);
+  EXPECT_FALSE(window_.banner().isVisible()) << "it was told";
 }
 
 TEST_F(MainWindowTest, BadFileGivesABannerWithAHintAndKeepsTheStudy) {
@@ -137,6 +145,7 @@ TEST_F(MainWindowTest, BadFileGivesABannerWithAHintAndKeepsTheStudy) {
 TEST_F(MainWindowTest, MissingFileGivesABanner) {
   open("nowhere.stl");
   EXPECT_TRUE(window_.banner().isVisible());
+  EXPECT_TRUE(window_.banner().message().contains("nowhere.stl"));
   EXPECT_TRUE(session().empty());
 }
 
@@ -254,6 +263,13 @@ TEST_F(MainWindowTest, ColoringChangesThePictureAndBringsALegend) {
     EXPECT_FALSE(window_.view().scene()->legend().title.isEmpty());
     EXPECT_GT(difference(plain, window_.view().picture()), 0.05);
   }
+  // There and back again the colors are the same.
+  window_.view().set_color_by(ColorBy::quality);
+  const QImage quality = window_.view().picture();
+  window_.view().set_color_by(ColorBy::body);
+  EXPECT_LT(difference(plain, window_.view().picture()), 0.001);
+  window_.view().set_color_by(ColorBy::quality);
+  EXPECT_LT(difference(quality, window_.view().picture()), 0.001);
 }
 
 TEST_F(MainWindowTest, BodySettingsAreEditedAndUndone) {
@@ -421,12 +437,73 @@ TEST_F(MainWindowTest, BodiesOfASecondFileAreAddedUnderANameOfTheirOwn) {
   ASSERT_TRUE(wait_idle());
   ASSERT_EQ(session().parts().size(), 2u);
   EXPECT_NE(session().body(0).name, session().body(1).name);
-  // It cannot be undone: it is asked first.
+}
+
+TEST_F(MainWindowTest, ARemovedPartComesBackWithItsGroupsAndSizes) {
+  write_box_stl(folder_ / "bar.stl", {60, 4, 8});
+  open("box.stl");
+  window_.open_files({QString::fromStdString((folder_ / "bar.stl").string())}, true);
+  ASSERT_TRUE(wait_idle());
+  add_group(session(), GroupKind::gate, "bar", {0});
+  add_sizing(session(), "bar", "near", SphereShape{{1, 2, 3}, 2});
+  session().select(1);
+  window_.findChild<QSpinBox*>("layers")->setValue(7);
+  const std::string asked = study_to_json(session().study());
+  const auto& tree = *window_.findChild<QTreeView*>("study")->model();
+  const auto rows = [&] { return tree.rowCount(tree.index(int(ItemKind::body), 0)); };
+  QTest::qWait(50);
+  const QImage both = window_.view().picture();
+
   action(Act::remove)->trigger();
+  ASSERT_EQ(session().parts().size(), 1u);
+  EXPECT_TRUE(session().study().groups.empty() && session().study().sizing.empty());
+  EXPECT_EQ(session().selected(), 0);
+  EXPECT_EQ(rows(), 1);
+  EXPECT_EQ(session().undo_stack()->undoText(), "Remove bar");
+  EXPECT_GT(difference(both, window_.view().picture()), 0.01);
+  action(Act::undo)->trigger();
+  ASSERT_EQ(session().parts().size(), 2u);
+  EXPECT_EQ(study_to_json(session().study()), asked);
+  EXPECT_EQ(session().selected(), 1);
+  EXPECT_EQ(rows(), 2);
+  QTest::qWait(50);
+  EXPECT_LT(difference(both, window_.view().picture()), 0.001);
+  action(Act::undo)->trigger();
+  EXPECT_EQ(session().body(1).layers, 4) << "what came before is undone as ever";
+
+  // What was meshed stays in sight, as a mesh of other settings, until the part is back.
+  run();
+  action(Act::remove)->trigger();
+  EXPECT_NE(session().shown_state(), nullptr);
+  EXPECT_TRUE(session().outdated());
+  action(Act::undo)->trigger();
+  EXPECT_FALSE(session().outdated());
+  // So does the last one.
+  for (int k = 0; k < 2; ++k) action(Act::remove)->trigger();
+  EXPECT_FALSE(session().has_bodies());
+  for (int k = 0; k < 2; ++k) action(Act::undo)->trigger();
   EXPECT_EQ(session().parts().size(), 2u);
-  for (auto* button : window_.banner().findChildren<QPushButton*>())
-    if (button->text() == "Remove") button->click();
-  EXPECT_EQ(session().parts().size(), 1u);
+  EXPECT_TRUE(action(Act::run)->isEnabled());
+}
+
+TEST_F(MainWindowTest, APartThatComesBackIsAsFineAsTheOthers) {
+  ASSERT_TRUE(write_sample("curved_shell", folder_ / "shell.step"));
+  open("shell.step");
+  window_.open_files({QString::fromStdString((folder_ / "box.stl").string())}, true);
+  ASSERT_TRUE(wait_idle());
+  fake_.step = std::chrono::milliseconds(10);
+  const auto triangles = [this] { return session().parts()[0].surface.facets.size(); };
+  const std::size_t coarse = triangles();
+  auto* chord = window_.findChild<LengthBox*>("chord_tolerance");
+  const double fine = session().automatic_size(0) / 5;
+  session().remove_item({ItemKind::body, 0});
+  chord->setValue(fine);
+  run();
+  for (int k = 0; k < 2; ++k) action(Act::undo)->trigger();
+  ASSERT_EQ(triangles(), coarse);
+  chord->setValue(fine);
+  run();
+  EXPECT_GT(triangles(), coarse) << "the box was as fine already, the shell was not";
 }
 
 TEST_F(MainWindowTest, ExportTellsSuccessAndFailure) {

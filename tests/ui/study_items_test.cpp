@@ -182,9 +182,11 @@ TEST_F(StudyItemsTest, SavedStudyIsOpenedAsItWas) {
   EXPECT_EQ(study_to_json(study()), asked);
   EXPECT_FALSE(session().modified());
   EXPECT_TRUE(window_.view().section().has_value());
+  EXPECT_FALSE(window_.banner().isVisible());
   session().save(folder_ / "nowhere" / "s.lamella");
   ASSERT_TRUE(wait_idle());
   EXPECT_TRUE(window_.banner().isVisible());
+  EXPECT_TRUE(window_.banner().message().contains("nowhere"));
   EXPECT_EQ(session().file(), folder_ / "s.lamella");
 }
 

@@ -53,14 +53,17 @@ class WindowFixture : public testing::Test {
     ASSERT_TRUE(wait_idle());
     QTest::qWait(30);
   }
+  void set_dark(bool dark) {
+    apply_theme(*qApp, dark);
+    window_.actions().refresh_icons();
+    window_.view().refresh_theme();
+  }
   /// Pictures to look at, where LAMELLA_PICTURES names a folder: in both themes.
   void picture(const QString& name) {
     const QString folder = qEnvironmentVariable("LAMELLA_PICTURES");
     if (folder.isEmpty()) return;
     for (const bool dark : {true, false}) {
-      apply_theme(*qApp, dark);
-      window_.actions().refresh_icons();
-      window_.view().refresh_theme();
+      set_dark(dark);
       QTest::qWait(150);
       view()->settle();
       window_.grab().save(folder + "/" + name + (dark ? "-dark.png" : ".png"));

@@ -1,6 +1,6 @@
 #include "ui/commands/edit_study.h"
 
-#include "ui/session/session.h"
+#include <utility>
 
 namespace lamella::ui {
 
@@ -13,7 +13,7 @@ EditStudy::EditStudy(Session& session, const QString& what, std::shared_ptr<cons
       merge_(merge) {}
 
 bool EditStudy::mergeWith(const QUndoCommand* later) {
-  const auto* next = static_cast<const EditStudy*>(later);  // all commands are of this class
+  const auto* next = static_cast<const EditStudy*>(later);  // all with its id are of this class
   if (merge_ == 0 || next->merge_ != merge_) return false;
   after_ = next->after_;
   return true;
@@ -22,5 +22,18 @@ bool EditStudy::mergeWith(const QUndoCommand* later) {
 void EditStudy::undo() { session_.set_study(before_); }
 
 void EditStudy::redo() { session_.set_study(after_); }
+
+RemovePart::RemovePart(Session& session, int index, std::shared_ptr<const Study> after)
+    : QUndoCommand(Session::tr("Remove %1").arg(QString::fromStdString(session.body(index).name))),
+      session_(session),
+      index_(index),
+      before_(session.study_value()),
+      after_(std::move(after)) {}
+
+void RemovePart::undo() {
+  session_.put_back(index_, *std::exchange(taken_, std::nullopt), before_);
+}
+
+void RemovePart::redo() { taken_ = session_.take_part(index_, after_); }
 
 }  // namespace lamella::ui

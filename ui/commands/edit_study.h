@@ -2,12 +2,12 @@
 
 #include <QUndoCommand>
 #include <memory>
+#include <optional>
 
 #include "core/study/study.h"
+#include "ui/session/session.h"
 
 namespace lamella::ui {
-
-class Session;
 
 /// Holds the study before and after an edit. Studies are values, so undo is a swap.
 class EditStudy : public QUndoCommand {
@@ -25,6 +25,22 @@ class EditStudy : public QUndoCommand {
   std::shared_ptr<const Study> before_;
   std::shared_ptr<const Study> after_;
   int merge_;
+};
+
+/// Takes a part out of the study, and puts it back.
+class RemovePart : public QUndoCommand {
+ public:
+  /// `after`: the study without it.
+  RemovePart(Session& session, int index, std::shared_ptr<const Study> after);
+  void undo() override;
+  void redo() override;
+
+ private:
+  Session& session_;
+  int index_;
+  std::shared_ptr<const Study> before_;
+  std::shared_ptr<const Study> after_;
+  std::optional<Session::TakenPart> taken_;  // while it is out
 };
 
 }  // namespace lamella::ui

@@ -56,13 +56,13 @@ ExportDialog::ExportDialog(const MeshFormats& formats, const QString& folder, co
   place->setContentsMargins(0, 0, 0, 0);
   file_ = new QLineEdit;
   file_->setObjectName("export_file");
-  file_->setMinimumWidth(360);
   file_->setText((folder.isEmpty() ? QString() : folder + "/") + name + first_ending(format()));
   place->addWidget(file_, 1);
   auto* browse = new QPushButton(tr("Browse…"));
   browse->setAutoDefault(false);
   place->addWidget(browse);
   form->add(tr("File"), row);
+  row->setMinimumWidth(460);  // a form lets its fields become narrow
   layout->addLayout(form);
   contents_ = styled_label({}, "soft");
   contents_->setWordWrap(true);

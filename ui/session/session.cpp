@@ -11,6 +11,7 @@
 #include "ui/commands/study_edits.h"
 #include "ui/theme.h"
 #include "ui/units.h"
+#include "ui/views/mesh_skin.h"
 
 namespace lamella::ui {
 namespace {
@@ -35,12 +36,12 @@ QString box_size(const ReferenceSurface<3>& surface) {
 
 /// A mesh of which no more than itself is known.
 Iteration iteration_of(std::shared_ptr<const MeshState> state,
-                       std::shared_ptr<const MeshFaces> faces) {
+                       std::shared_ptr<const PreparedMesh> prepared) {
   Iteration iteration;
   iteration.record.nodes = state->mesh.node_count();
   iteration.record.elements = state->mesh.element_count();
   iteration.state = std::move(state);
-  iteration.faces = std::move(faces);
+  iteration.prepared = std::move(prepared);
   return iteration;
 }
 
@@ -89,6 +90,16 @@ bool Session::outdated() const {
 
 std::shared_ptr<const MeshState> Session::shown_state() const {
   return shown_ < 0 ? nullptr : iterations_[shown_].state;
+}
+
+void Session::draw_as(SkinChoice choice) {
+  const auto now = drawn_as_.load();
+  if (!now || !(*now == choice)) drawn_as_ = std::make_shared<const SkinChoice>(std::move(choice));
+}
+
+std::shared_ptr<const PreparedMesh> Session::prepare(std::shared_ptr<const MeshState> state) const {
+  const auto as = drawn_as_.load();
+  return prepare_mesh(std::move(state), as ? *as : SkinChoice());
 }
 
 void Session::show_iteration(int index) {
@@ -219,7 +230,7 @@ void Session::open_study(const std::filesystem::path& file,
       ReadParts read;
       LoadParams params;
       std::shared_ptr<MeshState> mesh;
-      std::shared_ptr<const MeshFaces> faces;
+      std::shared_ptr<const PreparedMesh> prepared;
       std::optional<Error> unread;  // why there is none
     };
     const auto open_all = [&]() -> Result<Opened> {
@@ -243,8 +254,7 @@ void Session::open_study(const std::filesystem::path& file,
           opened.mesh = std::make_shared<MeshState>(std::move(*state));
         else
           opened.unread = state.error();
-        if (opened.mesh)
-          opened.faces = std::make_shared<const MeshFaces>(mesh_faces(opened.mesh->mesh));
+        if (opened.mesh) opened.prepared = prepare(opened.mesh);
       }
       return opened;
     };
@@ -268,7 +278,7 @@ void Session::open_study(const std::filesystem::path& file,
         Study made_of = *project_.mesh_study;
         arrange_bodies(made_of, *parts_);
         run_study_ = std::make_shared<const Study>(std::move(made_of));
-        Iteration iteration = iteration_of(opened->mesh, opened->faces);
+        Iteration iteration = iteration_of(opened->mesh, opened->prepared);
         take_report(iteration);
         add_iteration(std::move(iteration));
       }
@@ -361,16 +371,20 @@ void Session::open_mesh(const std::filesystem::path& file) {
   Q_EMIT logged(tr("Opening the mesh %1").arg(file_name(file)));
   begin(Activity::loading, [this, file](const Progress&) -> Worker::Done {
     Result<MeshState> read = services_.read_mesh(file);
-    std::shared_ptr<const MeshFaces> faces;
-    if (read) faces = std::make_shared<const MeshFaces>(mesh_faces(read->mesh));
-    return [this, read = std::move(read), faces, file]() mutable {
+    std::shared_ptr<const MeshState> state;
+    std::shared_ptr<const PreparedMesh> prepared;
+    if (read) {
+      state = std::make_shared<MeshState>(std::move(*read));
+      prepared = prepare(state);
+    }
+    return [this, read = std::move(read), state, prepared, file] {
       set_activity(Activity::idle);
       if (!read) return report(read.error());
       Study study;
       study.name = file.stem().string();
       project_ = {};
       replace_all(std::move(study), {}, 0);
-      add_iteration(iteration_of(std::make_shared<MeshState>(std::move(*read)), faces));
+      add_iteration(iteration_of(state, prepared));
     };
   });
 }
@@ -418,6 +432,7 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
   }
   parts_ = std::make_shared<const std::vector<Part>>(std::move(read.parts));
   sources_ = std::move(read.sources);
+  if (first_new == 0) surfaces_differ_ = false;
   selected_ = -1;
   selection_.clear();
   item_.reset();
@@ -439,30 +454,6 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
 void Session::wrote(const QString& file, const Result<void>& written) {
   if (!written) return report(written.error());
   Q_EMIT logged(tr("Wrote %1").arg(file));
-}
-
-void Session::remove_part(int index) {
-  if (activity_ != Activity::idle || index < 0 || index >= static_cast<int>(parts_->size())) return;
-  ReadParts rest{*parts_, sources_};
-  Study study = *study_;
-  const std::string name = rest.parts[static_cast<std::size_t>(index)].name;
-  Q_EMIT logged(tr("Removed %1").arg(text(name)));
-  rest.parts.erase(rest.parts.begin() + index);
-  rest.sources.erase(rest.sources.begin() + index);
-  study.left_out.push_back(name);
-  std::erase_if(study.groups, [&](const BoundaryGroup& group) { return group.body == name; });
-  std::erase_if(study.sizing, [&](const SizingObject& object) { return object.body == name; });
-  if (study.domain && study.domain->shape == decltype(study.domain->shape){DomainBody{name}})
-    study.domain = StudyDomain{DomainBodies{}};
-  if (rest.parts.empty() && study.zones.empty()) study = Study{};
-  const std::filesystem::path file = rest.parts.empty() ? std::filesystem::path() : file_;
-  const std::string saved = saved_;
-  const std::size_t all = rest.parts.size();
-  replace_all(std::move(study), std::move(rest), all);
-  file_ = file;
-  saved_ = saved;
-  compared_.reset();
-  select(std::min(index, static_cast<int>(study_->bodies.size()) - 1));
 }
 
 void Session::remove_item(const Item& item) {
@@ -529,7 +520,7 @@ void Session::run() {
   // The surfaces spend a share of the chord tolerance: another one needs other surfaces.
   LoadParams params = read_with_;
   params.chord_tolerance = study_->options.chord_tolerance;
-  const bool again = params.chord_tolerance != read_with_.chord_tolerance;
+  const bool again = surfaces_differ_ || params.chord_tolerance != read_with_.chord_tolerance;
   begin(
       Activity::running,
       [this, study = study_, parts = parts_, sources = sources_, params,
@@ -539,9 +530,12 @@ void Session::run() {
               read_again(services_, *parts, sources, params, whole.portion(0, 0.05, "reading"));
           if (!read)
             return [this, error = read.error()]() mutable { finish_run(std::move(error)); };
-          parts = std::make_shared<const std::vector<Part>>(std::move(*read));
-          worker_.post([this, parts, params] {
+          auto before =
+              std::exchange(parts, std::make_shared<const std::vector<Part>>(std::move(*read)));
+          worker_.post([this, before = std::move(before), parts, params] {
+            if (parts_ != before) return;  // a part was removed, or came back
             parts_ = parts;
+            surfaces_differ_ = false;
             read_with_ = params;
             follow_bodies();
             Q_EMIT surfaces_changed();
@@ -550,11 +544,12 @@ void Session::run() {
         const Progress progress = whole.portion(again ? 0.05 : 0, 1);
         const auto meshers = services_.meshers ? services_.meshers(study->options.seed)
                                                : std::vector<std::shared_ptr<const VolumeMesher>>{};
+        std::pair<std::shared_ptr<const MeshState>, std::shared_ptr<const PreparedMesh>> last;
         Result<Outcome> result = services_.run(
             *study, *parts, meshers, progress,
-            [this](const IterationRecord& record, std::shared_ptr<const MeshState> state) {
-              auto faces = std::make_shared<const MeshFaces>(mesh_faces(state->mesh));
-              worker_.post([this, record, state = std::move(state), faces] {
+            [&, this](const IterationRecord& record, std::shared_ptr<const MeshState> state) {
+              last = {state, prepare(state)};
+              worker_.post([this, record, state = std::move(state), prepared = last.second] {
                 Q_EMIT logged(tr("Iteration %1: %L2 nodes, %L3 elements, layers %4 (5 %: %5), %6 s")
                                   .arg(record.iteration)
                                   .arg(record.nodes)
@@ -566,19 +561,18 @@ void Session::run() {
                   Q_EMIT logged(tr("%L1 mixed elements, interface error %2")
                                     .arg(record.mixed)
                                     .arg(record.interface_error, 0, 'f', 4));
-                add_iteration({record, state, faces});
+                add_iteration({record, state, prepared});
               });
             });
-        std::shared_ptr<const MeshFaces> faces;
-        if (result && result->state)
-          faces = std::make_shared<const MeshFaces>(mesh_faces(result->state->mesh));
-        return [this, result = std::move(result), faces]() mutable {
-          finish_run(std::move(result), faces);
+        if (result && result->state && result->state != last.first)
+          last.second = prepare(result->state);
+        return [this, result = std::move(result), prepared = last.second]() mutable {
+          finish_run(std::move(result), prepared);
         };
       });
 }
 
-void Session::finish_run(Result<Outcome> result, std::shared_ptr<const MeshFaces> faces) {
+void Session::finish_run(Result<Outcome> result, std::shared_ptr<const PreparedMesh> prepared) {
   set_activity(Activity::idle);
   if (!result) {
     report(result.error());
@@ -588,7 +582,7 @@ void Session::finish_run(Result<Outcome> result, std::shared_ptr<const MeshFaces
   outcome_ = std::move(*result);
   if (outcome_->state) {
     mesh_unsaved_ = true;
-    keep_best(outcome_->state, faces);
+    keep_best(outcome_->state, prepared);
   }
   for (const BodyOutcome& body : outcome_->bodies) {
     Q_EMIT logged(tr("%1: first mesh by %2, layers %3 asked, %4 on average (5 %: %5)")
@@ -608,7 +602,7 @@ void Session::finish_run(Result<Outcome> result, std::shared_ptr<const MeshFaces
 }
 
 void Session::keep_best(const std::shared_ptr<const MeshState>& state,
-                        const std::shared_ptr<const MeshFaces>& faces) {
+                        const std::shared_ptr<const PreparedMesh>& prepared) {
   // The loop keeps its best mesh, which need not be the last one it told about.
   const bool follow = shown_ + 1 == static_cast<int>(iterations_.size());
   const auto best =
@@ -618,7 +612,7 @@ void Session::keep_best(const std::shared_ptr<const MeshState>& state,
       });
   if (best != iterations_.rend()) {
     best->state = state;
-    best->faces = faces;
+    best->prepared = prepared;
     if (follow) show_iteration(static_cast<int>(iterations_.rend() - best) - 1);
     return;
   }
@@ -628,7 +622,7 @@ void Session::keep_best(const std::shared_ptr<const MeshState>& state,
   mixed.record.nodes = state->mesh.node_count();
   mixed.record.elements = state->mesh.element_count();
   mixed.state = state;
-  mixed.faces = faces;
+  mixed.prepared = prepared;
   add_iteration(std::move(mixed));
 }
 

@@ -4,6 +4,7 @@
 #include <QElapsedTimer>
 #include <QObject>
 #include <QUndoStack>
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -15,7 +16,6 @@
 #include "core/study/report.h"
 #include "ui/services.h"
 #include "ui/session/item.h"
-#include "ui/session/mesh_faces.h"
 #include "ui/session/read_parts.h"
 #include "ui/session/worker.h"
 
@@ -24,11 +24,14 @@ namespace lamella::ui {
 /// What the window is busy with.
 enum class Activity { idle, loading, saving, running, exporting, checking, flowing };
 
+struct PreparedMesh;
+struct SkinChoice;
+
 /// One finished iteration: its record and the mesh it left.
 struct Iteration {
   IterationRecord record;
   std::shared_ptr<const MeshState> state;
-  std::shared_ptr<const MeshFaces> faces{};  ///< of its mesh; may be null
+  std::shared_ptr<const PreparedMesh> prepared{};  ///< to be drawn; may be null
 };
 
 /// Overlaps and gaps between the bodies, as they were looked for.
@@ -90,9 +93,11 @@ class Session : public QObject {
   /// Index into `iterations` of the one being looked at; -1: none, the parts are shown.
   int shown() const { return shown_; }
   std::shared_ptr<const MeshState> shown_state() const;
-  std::shared_ptr<const MeshFaces> shown_faces() const {
-    return shown_ < 0 ? nullptr : iterations_[static_cast<std::size_t>(shown_)].faces;
+  std::shared_ptr<const PreparedMesh> shown_prepared() const {
+    return shown_ < 0 ? nullptr : iterations_[static_cast<std::size_t>(shown_)].prepared;
   }
+  /// What the view draws of a mesh: those that come are prepared for it.
+  void draw_as(SkinChoice choice);
   void show_iteration(int index);
 
   /// Body selected everywhere; -1: none. Of several it is the one chosen last.
@@ -115,7 +120,8 @@ class Session : public QObject {
   void open_sample(const std::string& name);
   /// Reads a volume mesh just to look at it.
   void open_mesh(const std::filesystem::path& file);
-  /// Removes one part from the study.
+  /// Removes one part from the study, with its groups and sizes, as one undoable step. The mesh
+  /// shown stays, as one of other settings.
   void remove_part(int index);
 
   /// The file of the study; empty while it has none.
@@ -199,7 +205,16 @@ class Session : public QObject {
 
  private:
   friend class EditStudy;
+  friend class RemovePart;
   void set_study(std::shared_ptr<const Study> study);
+  /// A part that was removed, and the tolerances of its surface.
+  struct TakenPart {
+    Part part;
+    PartSource source;
+    LoadParams read_with;
+  };
+  TakenPart take_part(int index, std::shared_ptr<const Study> after);
+  void put_back(int index, TakenPart taken, std::shared_ptr<const Study> after);
   /// Shapes and selection for the bodies as they are now. True where other bodies came.
   bool follow_bodies();
   void take_zone_shapes();
@@ -219,10 +234,12 @@ class Session : public QObject {
   void replace_all(Study study, ReadParts read, std::size_t first_new);
   void clear_iterations();
   void add_iteration(Iteration iteration);
-  void finish_run(Result<Outcome> result, std::shared_ptr<const MeshFaces> faces = nullptr);
+  void finish_run(Result<Outcome> result, std::shared_ptr<const PreparedMesh> prepared = nullptr);
+  /// As the view draws it now; for use by the running job.
+  std::shared_ptr<const PreparedMesh> prepare(std::shared_ptr<const MeshState> state) const;
   /// The mesh a run ends with, among the iterations.
   void keep_best(const std::shared_ptr<const MeshState>& state,
-                 const std::shared_ptr<const MeshFaces>& faces);
+                 const std::shared_ptr<const PreparedMesh>& prepared);
 
   Services services_;
   std::shared_ptr<const Study> study_ = std::make_shared<Study>();
@@ -236,6 +253,7 @@ class Session : public QObject {
   std::optional<OverlapCheck> overlaps_;
   std::vector<PartSource> sources_;  // one a part
   LoadParams read_with_;             // tolerances of the parts' surfaces
+  bool surfaces_differ_ = false;     // one of them came back with another
   std::vector<Iteration> iterations_;
   std::optional<Outcome> outcome_;
   std::vector<std::pair<std::shared_ptr<const MeshState>, ExportCertificate>> exports_;
@@ -252,6 +270,7 @@ class Session : public QObject {
   std::string saved_;                              // the study as it was opened or saved
   mutable std::shared_ptr<const Study> compared_;  // by `modified`, with what it found
   mutable bool differs_ = false;
+  std::atomic<std::shared_ptr<const SkinChoice>> drawn_as_;
   int merges_ = 0;
   QUndoStack undo_;
   QElapsedTimer clock_;

@@ -3,11 +3,22 @@
 
 #include "core/study/flow_of_mesh.h"
 #include "core/study/zone_surface.h"
+#include "ui/commands/edit_study.h"
 #include "ui/session/session.h"
 #include "ui/session/zone_shapes.h"
 
 // The part of a session that knows of bodies without a file, and of several in one place.
 namespace lamella::ui {
+namespace {
+
+/// Takes what asks for the body by its name out of the study.
+void forget_body(Study& study, const std::string& name) {
+  std::erase_if(study.sizing, [&](const SizingObject& object) { return object.body == name; });
+  if (study.domain && study.domain->shape == decltype(study.domain->shape){DomainBody{name}})
+    study.domain = StudyDomain{DomainBodies{}};
+}
+
+}  // namespace
 
 bool Session::follow_bodies() {
   const auto same = [&](const auto& a, const auto& b) {
@@ -71,14 +82,48 @@ void Session::drop_overlaps() {
   Q_EMIT overlaps_changed();
 }
 
+void Session::remove_part(int index) {
+  if (activity_ != Activity::idle || !is_part(index)) return;
+  Study study = *study_;
+  std::vector<Part> rest = *parts_;
+  rest.erase(rest.begin() + index);
+  const std::string name = (*parts_)[static_cast<std::size_t>(index)].name;
+  study.left_out.push_back(name);
+  std::erase_if(study.groups, [&](const BoundaryGroup& group) { return group.body == name; });
+  forget_body(study, name);
+  arrange_bodies(study, rest);
+  undo_.push(new RemovePart(*this, index, std::make_shared<Study>(std::move(study))));
+  select(std::min(index, static_cast<int>(study_->bodies.size()) - 1));
+}
+
+Session::TakenPart Session::take_part(int index, std::shared_ptr<const Study> after) {
+  auto rest = std::make_shared<std::vector<Part>>(*parts_);
+  const auto at = static_cast<std::size_t>(index);
+  TakenPart taken{std::move((*rest)[at]), sources_[at], read_with_};
+  rest->erase(rest->begin() + index);
+  sources_.erase(sources_.begin() + index);
+  parts_ = std::move(rest);
+  set_study(std::move(after));
+  return taken;
+}
+
+void Session::put_back(int index, TakenPart taken, std::shared_ptr<const Study> after) {
+  auto all = std::make_shared<std::vector<Part>>(*parts_);
+  all->insert(all->begin() + index, std::move(taken.part));
+  sources_.insert(sources_.begin() + index, std::move(taken.source));
+  surfaces_differ_ =
+      surfaces_differ_ || taken.read_with.chord_tolerance != read_with_.chord_tolerance;
+  parts_ = std::move(all);
+  set_study(std::move(after));
+  select(index);
+}
+
 void Session::remove_zone(int index) {
   if (!is_zone(index)) return;
   Study study = *study_;
   const std::string name = study.bodies[static_cast<std::size_t>(index)].name;
   study.zones.erase(study.zones.begin() + (index - static_cast<int>(parts_->size())));
-  std::erase_if(study.sizing, [&](const SizingObject& object) { return object.body == name; });
-  if (study.domain && study.domain->shape == decltype(study.domain->shape){DomainBody{name}})
-    study.domain = StudyDomain{DomainBodies{}};
+  forget_body(study, name);
   // The last body takes what is around it along.
   if (study.zones.empty() && parts_->empty()) study.domain.reset();
   arrange_bodies(study, *parts_);
@@ -121,13 +166,15 @@ void Session::solve_flow() {
           clock.start();
           Result<FlowFields> flow = flow_of_mesh(*state, *study, *parts, progress);
           std::shared_ptr<const MeshState> flowing;
+          std::shared_ptr<const PreparedMesh> prepared;
           if (flow) {
             auto made = std::make_shared<MeshState>(*state);
             made->flow = std::make_shared<const FlowFields>(std::move(*flow));
             flowing = std::move(made);
+            prepared = prepare(flowing);
           }
           const double seconds = static_cast<double>(clock.elapsed()) / 1000;
-          return [this, state, flowing, seconds, flow = std::move(flow)] {
+          return [this, state, flowing, prepared, seconds, flow = std::move(flow)] {
             set_activity(Activity::idle);
             if (!flowing) return report(flow.error());
             const FlowFields& fields = *flowing->flow;
@@ -142,6 +189,7 @@ void Session::solve_flow() {
             for (std::size_t k = 0; k < iterations_.size(); ++k) {
               if (iterations_[k].state != state) continue;
               iterations_[k].state = flowing;
+              iterations_[k].prepared = prepared;
               iterations_[k].record.flow_rate = fields.rate();
               iterations_[k].record.flow_pressure = fields.highest_pressure();
               if (static_cast<int>(k) == shown_) Q_EMIT shown_changed();

@@ -104,7 +104,7 @@ void CompareView::follow_mesh() {
   const Iteration& compared = k < 0 ? none : session_.iterations()[static_cast<std::size_t>(k)];
   if (compared.state == shown_) return;
   shown_ = compared.state;
-  scene_->set_mesh(shown_, compared.faces);
+  scene_->set_mesh(shown_, compared.prepared);
   refresh();
 }
 

@@ -10,6 +10,8 @@
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
+
 #include "ui/views/mesh_data.h"
 
 namespace lamella::ui {
@@ -31,35 +33,73 @@ void add_numbers(vtkDataSetAttributes& to, const char* name, const std::vector<s
 
 }  // namespace
 
-void MeshSkin::set(std::shared_ptr<const MeshState> state, std::shared_ptr<const MeshFaces> faces) {
+std::shared_ptr<const PreparedMesh> prepare_mesh(std::shared_ptr<const MeshState> state,
+                                                 const SkinChoice& choice) {
+  auto made = std::make_shared<PreparedMesh>();
+  made->faces = mesh_faces(state->mesh);
+  MeshSkin skin;
+  skin.set(std::move(state), made);
+  skin.choose(choice);
+  made->skin = skin.skin(choice.planes);
+  made->elements = skin.elements();
+  if (choice.grid) made->grid = skin.grid();
+  made->choice = choice;
+  return made;
+}
+
+void MeshSkin::set(std::shared_ptr<const MeshState> state,
+                   std::shared_ptr<const PreparedMesh> prepared) {
   state_ = std::move(state);
-  faces_ = std::move(faces);
-  if (state_ && !faces_) faces_ = std::make_shared<const MeshFaces>(mesh_faces(state_->mesh));
-  grid_ = nullptr;
+  prepared_ = std::move(prepared);
+  if (state_ && !prepared_) {
+    auto faces = std::make_shared<PreparedMesh>();
+    faces->faces = mesh_faces(state_->mesh);
+    prepared_ = faces;
+  }
   elements_ = 0;
+  choose({});
+}
+
+void MeshSkin::choose(const SkinChoice& choice) {
+  choice_.hidden = choice.hidden;
+  choice_.quality = choice.quality;
+  grid_ = nullptr;
   in_sight_.clear();
   chosen_.clear();
 }
 
-void MeshSkin::choose(const std::vector<bool>& body_visible,
-                      const std::optional<std::pair<double, double>>& quality) {
-  grid_ = nullptr;
-  if (!state_) return;
+void MeshSkin::mark() {
   const SimplexMesh<3>& mesh = state_->mesh;
   const std::size_t count = mesh.elements.size();
-  in_sight_.assign(count, 1);
-  for (std::size_t e = 0; e < mesh.element_body.size() && !body_visible.empty(); ++e)
-    in_sight_[e] = body_visible[static_cast<std::size_t>(mesh.element_body[e])];
-  if (mesh.element_body.empty() && !body_visible.empty() && !body_visible[0])
-    in_sight_.assign(count, 0);
+  if (in_sight_.size() == count) return;
+  std::vector<char> body_in_sight;
+  for (const std::string& body : mesh.bodies)
+    body_in_sight.push_back(std::find(choice_.hidden.begin(), choice_.hidden.end(), body) ==
+                            choice_.hidden.end());
+  in_sight_.assign(count, body_in_sight.empty() ? 1 : body_in_sight[0]);
+  for (std::size_t e = 0; e < mesh.element_body.size() && !body_in_sight.empty(); ++e)
+    in_sight_[e] = body_in_sight[static_cast<std::size_t>(mesh.element_body[e])];
   chosen_ = in_sight_;
-  if (!quality || state_->quality.size() != count) return;
+  const auto& range = choice_.quality;
+  if (!range || state_->quality.size() != count) return;
   for (std::size_t e = 0; e < count; ++e)
     chosen_[e] =
-        chosen_[e] && state_->quality[e] >= quality->first && state_->quality[e] <= quality->second;
+        chosen_[e] && state_->quality[e] >= range->first && state_->quality[e] <= range->second;
+}
+
+bool MeshSkin::prepared() const {
+  return prepared_->skin && prepared_->choice.hidden == choice_.hidden &&
+         prepared_->choice.quality == choice_.quality;
 }
 
 vtkSmartPointer<vtkPolyData> MeshSkin::skin(const std::vector<std::pair<Vec<3>, Vec<3>>>& planes) {
+  if (prepared() && prepared_->choice.planes == planes) {
+    elements_ = prepared_->elements;
+    auto copy = vtkSmartPointer<vtkPolyData>::New();  // each view has colors of its own
+    copy->ShallowCopy(prepared_->skin);
+    return copy;
+  }
+  mark();
   const SimplexMesh<3>& mesh = state_->mesh;
   const std::vector<char>* drawn = &chosen_;
   std::vector<char> left;
@@ -85,9 +125,9 @@ vtkSmartPointer<vtkPolyData> MeshSkin::skin(const std::vector<std::pair<Vec<3>, 
     if (!(*drawn)[e]) continue;
     ++elements_;
     for (int k = 0; k < 4; ++k) {
-      const std::int32_t beyond = faces_->neighbor[e][std::size_t(k)];
+      const std::int32_t beyond = prepared_->faces.neighbor[e][std::size_t(k)];
       if (beyond >= 0 && (*drawn)[static_cast<std::size_t>(beyond)]) continue;
-      const std::int32_t number = faces_->facet(e, k);
+      const std::int32_t number = prepared_->faces.facet(e, k);
       element.push_back(static_cast<std::int32_t>(e));
       facet.push_back(number);
       // Where a body ends at one that is hidden, no cut has opened it.
@@ -125,6 +165,12 @@ vtkSmartPointer<vtkPolyData> MeshSkin::skin(const std::vector<std::pair<Vec<3>, 
 
 vtkUnstructuredGrid* MeshSkin::grid() {
   if (grid_ || !state_) return grid_;
+  if (prepared() && prepared_->grid) {
+    grid_ = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    grid_->ShallowCopy(prepared_->grid);
+    return grid_;
+  }
+  mark();
   const SimplexMesh<3>& mesh = state_->mesh;
   std::vector<std::int32_t> element;
   for (std::size_t e = 0; e < chosen_.size(); ++e)

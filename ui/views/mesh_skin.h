@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,14 +23,35 @@ inline constexpr const char* facet_array = "facet";
 inline constexpr const char* opened_array = "opened";
 inline constexpr const char* node_array = "node";
 
+/// What of a mesh is drawn.
+struct SkinChoice {
+  std::vector<std::string> hidden;  ///< bodies out of sight
+  std::optional<std::pair<double, double>> quality;
+  /// Origin and normal of each: elements without a node where all are negative go.
+  std::vector<std::pair<Vec<3>, Vec<3>>> planes;
+  bool grid = false;  ///< the elements themselves are needed too, to be cut through
+
+  bool operator==(const SkinChoice&) const = default;
+};
+
+/// What drawing a mesh takes longest for. Made off the window's thread, then belongs to that.
+struct PreparedMesh {
+  MeshFaces faces;
+  SkinChoice choice;  ///< that the rest is of
+  vtkSmartPointer<vtkPolyData> skin;
+  std::size_t elements = 0;
+  vtkSmartPointer<vtkUnstructuredGrid> grid;  ///< null: not asked for
+};
+std::shared_ptr<const PreparedMesh> prepare_mesh(std::shared_ptr<const MeshState> state,
+                                                 const SkinChoice& choice);
+
 /// The elements of a mesh that are drawn: those of bodies in sight, in a range of qualities.
 class MeshSkin {
  public:
-  /// Null: nothing. Without `faces` they are made here.
-  void set(std::shared_ptr<const MeshState> state, std::shared_ptr<const MeshFaces> faces);
-  /// [body of the mesh] and the range; empty: all.
-  void choose(const std::vector<bool>& body_visible,
-              const std::optional<std::pair<double, double>>& quality);
+  /// Null: nothing. What is not prepared is made here.
+  void set(std::shared_ptr<const MeshState> state, std::shared_ptr<const PreparedMesh> prepared);
+  /// Takes its bodies and its range.
+  void choose(const SkinChoice& choice);
   explicit operator bool() const { return state_ != nullptr; }
 
   /// The outside of the chosen elements that have a node where all planes (origin, normal) are
@@ -41,9 +63,14 @@ class MeshSkin {
   vtkUnstructuredGrid* grid();
 
  private:
+  /// Fills the marks of elements, unless they are up to date.
+  void mark();
+  bool prepared() const;
+
   std::shared_ptr<const MeshState> state_;
-  std::shared_ptr<const MeshFaces> faces_;
-  std::vector<char> in_sight_;  // [element] its body is
+  std::shared_ptr<const PreparedMesh> prepared_;
+  SkinChoice choice_;           // without planes
+  std::vector<char> in_sight_;  // [element] its body is; empty: not marked yet
   std::vector<char> chosen_;    // [element] and its quality is in the range
   std::size_t elements_ = 0;
   vtkSmartPointer<vtkUnstructuredGrid> grid_;

@@ -21,6 +21,7 @@
 #include "ui/units.h"
 #include "ui/views/compare_view.h"
 #include "ui/views/first_direction.h"
+#include "ui/views/mesh_skin.h"
 #include "ui/views/overlay.h"
 #include "ui/views/pick_tools.h"
 #include "ui/views/size_shapes.h"
@@ -461,7 +462,8 @@ void ModelView::follow_mesh() {
   if (!scene_) return;
   const bool had = scene_->bounds()[0] <= scene_->bounds()[1];
   picks_->forget();
-  scene_->set_mesh(session_.shown_state(), session_.shown_faces());
+  if (session_.activity() == Activity::running) view_->hurry();  // well in a turn of its own
+  scene_->set_mesh(session_.shown_state(), session_.shown_prepared());
   walls_->want(of_walls(color_by()) && !session_.shown_state());
   if (!session_.has_bodies()) follow_study();
   tool_->set_bounds(scene_->bounds());
@@ -475,6 +477,7 @@ void ModelView::refresh() {
     legend.missing = walls_->status();
   overlay_->set_legend(legend);
   overlay_->set_scale_visible(!session_.empty());
+  session_.draw_as(scene_->skin_choice());
   view_->update();
   if (compare_) compare_->refresh();
 }

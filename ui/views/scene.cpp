@@ -171,14 +171,22 @@ struct Scene::Impl {
     }
   }
 
-  /// The elements of visible bodies.
+  /// What is drawn of a mesh: the elements of visible bodies, cut by whole elements or not.
+  SkinChoice choice() const {
+    SkinChoice choice;
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      if (!part_visible(static_cast<int>(k))) choice.hidden.push_back(parts[k].name);
+    choice.quality = quality_range;
+    if (crinkle)
+      for (const Cut& cut : cuts)
+        choice.planes.emplace_back(Vec<3>(cut.keep->GetOrigin()), Vec<3>(cut.keep->GetNormal()));
+    choice.grid = flow_look.any() || (!crinkle && !cuts.empty());
+    return choice;
+  }
+
   void choose_elements() {
     skin = nullptr;
-    if (!state) return;
-    std::vector<bool> body_visible;
-    for (std::size_t b = 0; b < state->mesh.bodies.size(); ++b)
-      body_visible.push_back(part_visible(part_of_body[b]));
-    skins.choose(body_visible, has(ColorBy::quality) ? quality_range : std::nullopt);
+    if (state) skins.choose(choice());
   }
 
   void update_mesh() {
@@ -193,10 +201,7 @@ struct Scene::Impl {
       return;
     }
     if (!cuts.empty() && crinkle) {
-      std::vector<std::pair<Vec<3>, Vec<3>>> planes;
-      for (const Cut& cut : cuts)
-        planes.emplace_back(Vec<3>(cut.keep->GetOrigin()), Vec<3>(cut.keep->GetNormal()));
-      mesh_mapper->SetInputData(skins.skin(planes));
+      mesh_mapper->SetInputData(skins.skin(choice().planes));
       shown = skins.elements();
     } else {
       if (!skin) {
@@ -346,7 +351,7 @@ struct Scene::Impl {
     mapper.SetColorModeToMapScalars();
     if (color_by == ColorBy::filling) {
       auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
-      data.GetCellData()->SetScalars(filling_bands(*state->filling, filled_region(), *element));
+      show_values(data, *filling_bands(*state->filling, filled_region(), *element));
       mapper.SetScalarModeToUseCellData();
       mapper.InterpolateScalarsBeforeMappingOff();
     } else if (const auto [name, of_elements] = array_of(color_by); of_elements) {
@@ -366,30 +371,45 @@ struct Scene::Impl {
     auto* element = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(element_array));
     auto* facet = vtkIntArray::SafeDownCast(data.GetCellData()->GetArray(facet_array));
     auto* opened = vtkUnsignedCharArray::SafeDownCast(data.GetCellData()->GetArray(opened_array));
+    // A few colors for many faces: each as it is, and where a cut laid it open. Bodies side by side
+    // in a cut must differ.
+    using Bytes = std::array<unsigned char, 3>;
+    const auto both = [&](const QColor& c) {
+      const auto bytes = [](const QColor& of) {
+        return Bytes{static_cast<unsigned char>(of.red()), static_cast<unsigned char>(of.green()),
+                     static_cast<unsigned char>(of.blue())};
+      };
+      return std::array{bytes(c), bytes(inside_color(c, state->mesh.bodies.size() > 1 ? 2 : 1))};
+    };
+    std::vector<std::array<Bytes, 2>> of_body, of_group;
+    for (std::size_t b = 0; b < state->mesh.bodies.size(); ++b)
+      of_body.push_back(both(color_of_body(static_cast<int>(b))));
+    for (const QColor& c : group_colors) of_group.push_back(both(c));
+    const auto& element_body = state->mesh.element_body;
     const vtkIdType faces = data.GetNumberOfCells();
     vtkNew<vtkUnsignedCharArray> rgb;
     rgb->SetName("body color");
     rgb->SetNumberOfComponents(3);
     rgb->SetNumberOfTuples(faces);
-    for (vtkIdType f = 0; f < faces; ++f) {
-      const int e = element->GetValue(f);
-      const int body =
-          state->mesh.element_body.empty() ? 0 : state->mesh.element_body[std::size_t(e)];
-      QColor c = color_of_body(body);
+    unsigned char* out = rgb->GetPointer(0);
+    for (vtkIdType f = 0; f < faces; ++f, out += 3) {
+      const auto e = static_cast<std::size_t>(element->GetValue(f));
+      const auto body = element_body.empty() ? 0 : static_cast<std::size_t>(element_body[e]);
       const int number = inside ? -1 : facet->GetValue(f);
-      const int group = number < 0 ? -1
-                                   : group_of(part_of_body[static_cast<std::size_t>(body)],
-                                              static_cast<std::size_t>(number));
-      if (group >= 0) c = group_colors[static_cast<std::size_t>(group)];
-      // Bodies side by side in a cut must differ.
-      if (inside || opened->GetValue(f) != 0)
-        c = inside_color(c, state->mesh.bodies.size() > 1 ? 2 : 1);
-      const unsigned char bytes[3] = {static_cast<unsigned char>(c.red()),
-                                      static_cast<unsigned char>(c.green()),
-                                      static_cast<unsigned char>(c.blue())};
-      rgb->SetTypedTuple(f, bytes);
+      const int group =
+          number < 0 ? -1 : group_of(part_of_body[body], static_cast<std::size_t>(number));
+      const auto& color = group < 0 ? of_body[body] : of_group[static_cast<std::size_t>(group)];
+      const Bytes& bytes = color[inside || opened->GetValue(f) != 0 ? 1 : 0];
+      std::copy(bytes.begin(), bytes.end(), out);
     }
-    data.GetCellData()->SetScalars(rgb);
+    show_values(data, *rgb);
+  }
+
+  /// Colors cells by these values. The active ones stay for the next time: SetScalars would throw
+  /// them away.
+  static void show_values(vtkPolyData& data, vtkDataArray& values) {
+    data.GetCellData()->AddArray(&values);
+    data.GetCellData()->SetActiveScalars(values.GetName());
   }
 };
 
@@ -419,9 +439,9 @@ void Scene::set_parts(const std::vector<Part>& parts, const std::vector<QColor>&
 }
 
 void Scene::set_mesh(std::shared_ptr<const MeshState> state,
-                     std::shared_ptr<const MeshFaces> faces) {
+                     std::shared_ptr<const PreparedMesh> prepared) {
   impl_->state = std::move(state);
-  impl_->skins.set(impl_->state, std::move(faces));
+  impl_->skins.set(impl_->state, std::move(prepared));
   impl_->match_bodies();
   if (impl_->state && impl_->parts.empty())
     impl_->mesh_lines_mapper->SetInputData(feature_data(impl_->state->mesh));
@@ -430,6 +450,8 @@ void Scene::set_mesh(std::shared_ptr<const MeshState> state,
   impl_->update_mesh();
   impl_->update_visibility();
 }
+
+SkinChoice Scene::skin_choice() const { return impl_->choice(); }
 
 void Scene::set_walls(const std::vector<std::shared_ptr<const ThicknessMap>>& maps) {
   std::vector<double> all;

@@ -11,13 +11,15 @@
 #include "core/geometry/surface.h"
 #include "core/natural/thickness_map.h"
 #include "core/study/run.h"
-#include "ui/session/mesh_faces.h"
 #include "ui/views/color_map.h"
 #include "ui/views/section.h"
 
 class vtkRenderer;
 
 namespace lamella::ui {
+
+struct PreparedMesh;
+struct SkinChoice;
 
 /// What lies under a pixel.
 struct Picked {
@@ -36,10 +38,12 @@ class Scene {
 
   /// `colors` has one entry a part.
   void set_parts(const std::vector<Part>& parts, const std::vector<QColor>& colors);
-  /// Null shows the parts. Bodies are matched to parts by name. Without `faces` they are made here,
-  /// which takes a while.
+  /// Null shows the parts. Bodies are matched to parts by name. What is not prepared, or otherwise
+  /// than `skin_choice` says, is made here, which takes a while.
   void set_mesh(std::shared_ptr<const MeshState> state,
-                std::shared_ptr<const MeshFaces> faces = nullptr);
+                std::shared_ptr<const PreparedMesh> prepared = nullptr);
+  /// What of the next mesh will be drawn.
+  SkinChoice skin_choice() const;
   /// Wall thickness on the surfaces of the parts, or the size asked there, one a part or null: for
   /// the fields `of_walls` while no mesh is shown.
   void set_walls(const std::vector<std::shared_ptr<const ThicknessMap>>& maps);
