@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/atomic_file.h"
+#include "core/io/medit.h"
 #include "core/io/mesh_file.h"
 #include "tests/support/foreign_program.h"
 #include "tests/support/measures.h"
