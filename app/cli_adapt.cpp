@@ -273,7 +273,7 @@ bool overwrites_metric(const AdaptCommand& c) {
     return fs::equivalent(a, b, ec);
   };
   const fs::path output = c.output;
-  return !c.sol.empty() && output.extension() == ".mesh" && !same(output, c.mesh) &&
+  return !c.sol.empty() && names_medit(output) && !same(output, c.mesh) &&
          same(fs::path(output).replace_extension(".sol"), c.sol);
 }
 

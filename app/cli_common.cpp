@@ -32,7 +32,7 @@ Error of_input(Error error) {
 
 Result<AnyMesh> read_any(const std::string& file, MetricField<3>* metric,
                          const Progress& progress) {
-  if (fs::path(file).extension() == ".mesh") {
+  if (names_medit(file)) {
     Result<AnyMesh> any = read_medit(file, progress);
     if (!any || !std::holds_alternative<SimplexMesh<3>>(*any)) return any;
     MeshContent content;

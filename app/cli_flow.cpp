@@ -10,8 +10,10 @@
 #include "core/flow/indicators.h"
 #include "core/flow/stokes.h"
 #include "core/io/mesh_file.h"
+#include "core/io/vtu.h"
 #include "core/io_vtk/vtu.h"
 #include "core/study/flow_entry.h"
+#include "core/study/forecast.h"
 #include "core/study/measure.h"
 
 namespace lamella::cli {
@@ -39,10 +41,10 @@ Result<NodeField> external_field(const SimplexMesh<3>& mesh, const FlowCommand& 
   if (fs::path(file).extension() != ".vtu")
     return Error{Code::usage, "\"" + file + "\" is no .vtu: it has no field to correct by.",
                  "Give the solver's result with --field FILE.vtu."};
-  Result<SolverResult> found = read_vtu_result(file);
+  Result<MeshContent> found = read_vtu_result(file, progress.portion(0, 0));
   if (!found) return of_input(found.error());
   std::string known;
-  for (NodeField& field : found->fields) {
+  for (NodeField& field : found->of_nodes) {
     known += (known.empty() ? "" : ", ") + field.name;
     if (field.name != name) continue;
     for (Vec<3>& p : found->mesh.points) p *= unit_factor(c.field_unit);
@@ -270,6 +272,12 @@ int solve_and_correct(const SimplexMesh<D>& whole, MetricField<D> metric, const 
   const SimplexMesh<D>& mesh = c.body.empty() ? whole : part;
 
   const Asked asked = asked_of(c.correct);
+  if (Result<void> fits =
+          within_memory("The flow through " + grouped(mesh.node_count()) + " nodes: about",
+                        flow_memory(static_cast<double>(mesh.node_count())), c.memory,
+                        "Allow more memory, solve in one --body alone, or take a coarser mesh.");
+      !fits)
+    return console.fail(fits.error());
   Fields<D> fields;
   if (asked.field.empty() || !c.gates.empty() || !c.rates.empty()) {
     auto found = fields_of<D>(mesh, c, progress.portion(0, 0.7));

@@ -212,12 +212,26 @@ int run_generate(const GenerateCommand& c, Console& console) {
   Result<std::vector<Part>> parts = load_all({c.surface}, study, load, progress.portion(0, 0.1));
   if (!parts) return console.fail(parts.error());
 
+  const MesherChoice asked = mesher_choice(c.mesher);
+  for (const Part& part : *parts) {
+    const std::size_t facets = part.surface.facets.size();
+    if (Result<void> fits = within_memory(
+            "Body \"" + part.name + "\", whose surface has " + grouped(facets) +
+                " triangles: about",
+            first_mesh_memory(facets, asked == MesherChoice::netgen), c.memory,
+            "Allow more memory, or take a coarser surface by a larger --chord-tolerance.");
+        !fits)
+      return console.fail(fits.error());
+  }
   std::vector<MeshState> states(parts->size());
   std::vector<const MeshState*> pointers;
   std::vector<std::string> names;
-  const auto meshers = meshers_for(mesher_choice(c.mesher), c.seed);
   for (std::size_t b = 0; b < parts->size(); ++b) {
     const Part& part = (*parts)[b];
+    // Netgen takes more; where it would take too much there is algorithm 2.1 alone.
+    const bool without_netgen = asked == MesherChoice::automatic && c.memory &&
+                                first_mesh_memory(part.surface.facets.size(), true) > *c.memory;
+    const auto meshers = meshers_for(without_netgen ? MesherChoice::topological : asked, c.seed);
     const auto at = static_cast<double>(b), count = static_cast<double>(parts->size());
     const Progress share =
         progress.portion(0.1 + 0.8 * at / count, 0.1 + 0.8 * (at + 1) / count, "first mesh");

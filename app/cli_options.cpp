@@ -101,6 +101,10 @@ void add_threads(CLI::App* app, Value& threads) {
       ->check(CLI::Range(0, 4096));
 }
 
+void add_memory(CLI::App* app, std::optional<double>& memory, const char* what) {
+  app->add_option("--memory", memory, what)->option_text("MB")->check(CLI::PositiveNumber);
+}
+
 void add_json(CLI::App* app, bool& json) {
   app->add_flag("--json", json, "One JSON object a line on standard output");
 }
@@ -189,10 +193,8 @@ void add_adapt(CLI::App* a, AdaptCommand& adapt) {
       ->check(CLI::Range(1, 1000));
   add_chord(a, adapt.chord_tolerance);
   add_threads(a, adapt.threads);
-  a->add_option("--memory", adapt.memory,
-                "Memory the adaption may take, MB; status 6 when more is needed [no limit]")
-      ->option_text("MB")
-      ->check(CLI::PositiveNumber);
+  add_memory(a, adapt.memory,
+             "Memory the adaption may take, MB; status 6 when more is needed [no limit]");
   a->add_option("--seed", adapt.seed, "Another seed gives another, equally good mesh [1]")
       ->option_text("N");
   add_json(a, adapt.json);
@@ -265,6 +267,8 @@ void add_flow(CLI::App* f, FlowCommand& flow) {
                   ->needs(correct);
   correct->needs(out);
   add_threads(f, flow.threads);
+  add_memory(f, flow.memory,
+             "Memory that it may take, MB; status 6 when more is needed [no limit]");
   add_json(f, flow.json);
 }
 
@@ -458,10 +462,8 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       ->check(CLI::Range(1, 1000));
   m->add_flag("--progressive", mesh.progressive,
               "Ask for 2, 3, .. n layers in the first iterations, which lowers the peak of memory");
-  m->add_option("--memory", mesh.memory,
-                "Memory an adaption may take, MB; status 6 when more is needed [no limit]")
-      ->option_text("MB")
-      ->check(CLI::PositiveNumber);
+  add_memory(m, mesh.memory,
+             "Memory an adaption may take, MB; status 6 when more is needed [no limit]");
   m->add_option("--h-min", mesh.h_min, "Smallest size, mm [1/1000 of the body's diagonal]")
       ->option_text("X")
       ->check(CLI::PositiveNumber);
@@ -529,6 +531,8 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   add_cad(g, generate.cad);
   add_mesher(g, generate.mesher);
   add_threads(g, generate.threads);
+  add_memory(g, generate.memory,
+             "Memory that a body may take, MB; status 6 when more is needed [no limit]");
   g->add_option("--seed", generate.seed, "Another seed gives another, equally good mesh [1]")
       ->option_text("N");
   add_json(g, generate.json);

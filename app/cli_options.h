@@ -88,6 +88,7 @@ struct GenerateCommand {
   std::string mesher = "auto";
   std::optional<double> chord_tolerance;
   std::optional<int> threads;
+  std::optional<double> memory;  ///< MB
   std::uint64_t seed = 1;
   bool json = false;
 };
@@ -159,6 +160,7 @@ struct FlowCommand {
   std::string field_unit = "mm";
   double strength = 1, beta = 1;
   std::optional<double> h_min, elements;
+  std::optional<double> memory;  ///< MB
   int threads = 0;
   bool json = false;
 };

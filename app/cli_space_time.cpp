@@ -113,7 +113,7 @@ int undo(const std::vector<fs::path>& files, const Error& error, Console& consol
     std::error_code ignored;
     fs::remove(file, ignored);
     for (const char* beside : {".sol", ".json"}) fs::remove(file.string() + beside, ignored);
-    if (file.extension() == ".mesh") fs::remove(fs::path(file).replace_extension(".sol"), ignored);
+    if (names_medit(file)) fs::remove(fs::path(file).replace_extension(".sol"), ignored);
   }
   return console.fail(error);
 }

@@ -1,5 +1,6 @@
 #include "ui/report_pdf.h"
 
+#include <QAbstractEventDispatcher>
 #include <QFile>
 #include <QImage>
 #include <QPainter>
@@ -7,6 +8,9 @@
 #include <QRegularExpression>
 #include <QSvgRenderer>
 #include <QTextDocument>
+#include <QThread>
+#include <exception>
+#include <memory>
 
 namespace lamella::ui {
 namespace {
@@ -85,9 +89,7 @@ void lay_out(QString html, QTextDocument& document) {
   document.setHtml(html);
 }
 
-}  // namespace
-
-Result<void> write_report_pdf(const QString& html, const QString& file) {
+Result<void> write_in_this_thread(const QString& html, const QString& file) {
   if (!html.contains("<main>") || !html.contains("Lamella"))
     return Error{Code::bad_input, "There is no report of Lamella in it.",
                  "Give the .report.html beside a mesh, or a .lamella project with one."};
@@ -109,6 +111,26 @@ Result<void> write_report_pdf(const QString& html, const QString& file) {
     return Error{Code::io, "\"" + file.toStdString() + "\" could not be written in full.",
                  "Is there space left?"};
   return {};
+}
+
+}  // namespace
+
+Result<void> write_report_pdf(const QString& html, const QString& file) {
+  // A text document starts timers, for which a thread needs Qt's dispatcher; the worker has none.
+  if (QAbstractEventDispatcher::instance()) return write_in_this_thread(html, file);
+  Result<void> done;
+  std::exception_ptr thrown;
+  const std::unique_ptr<QThread> thread(QThread::create([&] {
+    try {
+      done = write_in_this_thread(html, file);
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+  }));
+  thread->start();
+  thread->wait();
+  if (thrown) std::rethrow_exception(thrown);
+  return done;
 }
 
 }  // namespace lamella::ui

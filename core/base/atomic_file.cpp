@@ -151,7 +151,7 @@ Result<void> write_file(const fs::path& target, std::string_view bytes) {
   return file->commit();
 }
 
-Result<std::string> read_file(const fs::path& path) {
+Result<std::ifstream> open_to_read(const fs::path& path) {
   std::error_code ec;
   const fs::file_status status = fs::status(path, ec);
   if (!fs::exists(status))
@@ -162,6 +162,14 @@ Result<std::string> read_file(const fs::path& path) {
   if (!stream)
     return io_error(path, std::string("cannot be read (") + std::strerror(errno) + ")",
                     "Check the permissions.");
+  return stream;
+}
+
+Result<std::string> read_file(const fs::path& path) {
+  Result<std::ifstream> opened = open_to_read(path);
+  if (!opened) return opened.error();
+  std::ifstream& stream = *opened;
+  std::error_code ec;
   std::string bytes;
   const auto size = fs::file_size(path, ec);
   if (!ec) bytes.reserve(size);

@@ -47,6 +47,10 @@ void remove_leftovers(const std::filesystem::path& target);
 /// Writes the bytes in one step. Errors: as AtomicFile.
 Result<void> write_file(const std::filesystem::path& target, std::string_view bytes);
 
+/// A file to be read, binary, at its beginning. Errors: io (missing, a folder, unreadable), naming
+/// the file.
+Result<std::ifstream> open_to_read(const std::filesystem::path& file);
+
 /// Whole content of a file. Errors: io (missing, a folder, unreadable), naming the file.
 Result<std::string> read_file(const std::filesystem::path& file);
 

@@ -17,7 +17,9 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/base/parallel.h"
 
@@ -41,10 +43,12 @@ void write_all(int pipe, const char* bytes, std::size_t count) {
   }
 }
 
-void answer(int pipe, char kind, const std::string& bytes) {
+void answer(int pipe, char kind, const std::string& bytes = {}) {
   write_all(pipe, &kind, 1);
   write_all(pipe, bytes.data(), bytes.size());
 }
+
+using StreamWork = std::function<void(const ByteSink&, const Progress&)>;
 
 struct ProgressHead {
   char kind = kProgress;
@@ -53,10 +57,11 @@ struct ProgressHead {
 };
 static_assert(sizeof(ProgressHead) + 255 < PIPE_BUF, "a message of progress goes out in one piece");
 
-/// Sends what the child's work reports, but not every small step.
-Progress progress_through(int pipe) {
+/// Sends what the child's work reports, but not every small step, and nothing once it answers.
+Progress progress_through(int pipe, const bool& answers) {
   auto told = std::make_shared<std::pair<double, std::string>>(-1, "");
-  return Progress([pipe, told](double fraction, std::string_view phase) {
+  return Progress([pipe, told, &answers](double fraction, std::string_view phase) {
+    if (answers) return;
     phase = phase.substr(0, 255);
     if (fraction < told->first + 0.002 && phase == told->second) return;
     *told = {fraction, std::string(phase)};
@@ -67,20 +72,6 @@ Progress progress_through(int pipe) {
     message += phase;
     write_all(pipe, message.data(), message.size());
   });
-}
-
-/// Hands the messages of progress at the beginning of `bytes` on, from `at`; returns where they
-/// end.
-std::size_t tell_progress(const std::string& bytes, std::size_t at, const Progress& progress) {
-  ProgressHead head;
-  while (bytes.size() - at >= sizeof head && bytes[at] == kProgress) {
-    std::memcpy(&head, bytes.data() + at, sizeof head);
-    const std::size_t end = at + sizeof head + head.phase_length;
-    if (bytes.size() < end) break;
-    progress.portion(0, 1, bytes.substr(at + sizeof head, head.phase_length)).report(head.fraction);
-    at = end;
-  }
-  return at;
 }
 
 /// The child's limit counts the memory that it has of the caller.
@@ -97,7 +88,7 @@ void limit_memory(std::uint64_t bytes) {
   ::setrlimit(RLIMIT_DATA, &now);
 }
 
-[[noreturn]] void be_the_child(int pipe, pid_t parent, const ChildWork& work,
+[[noreturn]] void be_the_child(int pipe, pid_t parent, const StreamWork& work,
                                std::uint64_t memory) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(1);
@@ -109,14 +100,30 @@ void limit_memory(std::uint64_t bytes) {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nothing, stream);
   if (memory > 0) limit_memory(memory);
   without_threads = true;
+  bool answers = false;
+  const auto begin = [&] {
+    if (!answers) answer(pipe, kValue);
+    answers = true;
+  };
+  // Within an answer nothing else can be told but that it ends early.
+  const auto instead = [&](char kind, const std::string& bytes) {
+    if (answers) ::_exit(1);
+    answer(pipe, kind, bytes);
+  };
   try {
-    answer(pipe, kValue, work(progress_through(pipe)));
+    work(
+        [&](const char* bytes, std::size_t count) {
+          begin();
+          write_all(pipe, bytes, count);
+        },
+        progress_through(pipe, answers));
+    begin();
   } catch (const std::bad_alloc&) {
-    answer(pipe, kNoMemory, "");
+    instead(kNoMemory, "");
   } catch (const std::exception& e) {
-    answer(pipe, kThrown, e.what());
+    instead(kThrown, e.what());
   } catch (...) {
-    answer(pipe, kThrown, "it threw an unknown exception.");
+    instead(kThrown, "it threw an unknown exception.");
   }
   ::_exit(0);
 }
@@ -133,21 +140,26 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Waits a moment for bytes; true once the child has ended and all of them are in `bytes`.
-  bool drain(std::string& bytes) {
-    pollfd ready{pipe_, POLLIN, 0};
-    ::poll(&ready, 1, 20);
-    // Asked before reading: what an ended child wrote is all there. The end of the pipe alone
-    // would not do, a child forked meanwhile by another thread holds it open.
-    if (!ended_) reap(WNOHANG);
-    char block[65536];
-    for (;;) {
-      const ssize_t n = ::read(pipe_, block, sizeof block);
-      if (n > 0) bytes.append(block, static_cast<std::size_t>(n));
-      if (n < 0 && errno == EINTR) continue;
-      if (n == 0 && !ended_) reap(0);
-      if (n <= 0) return ended_;
+  /// So many bytes, or fewer at the end; `go_on` is asked while there are none, and false ends it.
+  std::size_t read(char* to, std::size_t count, const std::function<bool()>& go_on) {
+    std::size_t got = 0;
+    while (got < count) {
+      // Asked before reading: what an ended child wrote is all there. The end of the pipe alone
+      // would not do, a child forked meanwhile by another thread holds it open.
+      const bool all_written = ended_;
+      const ssize_t n = ::read(pipe_, to + got, count - got);
+      if (n > 0) got += static_cast<std::size_t>(n);
+      if (n > 0 || (n < 0 && errno == EINTR)) continue;
+      if (n == 0 || all_written || !go_on()) break;
+      pollfd ready{pipe_, POLLIN, 0};
+      ::poll(&ready, 1, 20);
+      if (!ended_) reap(WNOHANG);
     }
+    return got;
+  }
+  /// Waits for the end, which is near when the pipe has one.
+  void wait() {
+    if (!ended_) reap(0);
   }
   int status() const { return status_; }
 
@@ -169,8 +181,8 @@ Error no_memory() {
   return {Code::memory, "it ran out of memory.", "Use a coarser surface, or more memory."};
 }
 
-/// What a child that ended with `status` answered, `at` being where its answer begins.
-Result<std::string> judge(int status, std::string bytes, std::size_t at) {
+/// Why a child that ended with `status` has not answered; nothing when it has.
+std::optional<Error> fault_of(int status) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     if (signal == SIGKILL) return no_memory();  // we did not, so the system did
@@ -178,21 +190,28 @@ Result<std::string> judge(int status, std::string bytes, std::size_t at) {
     return Error{Code::failed,
                  std::string("it crashed (") + (text ? text : "unknown signal") + ").", ""};
   }
-  if (WEXITSTATUS(status) != 0 || bytes.size() == at)
+  if (WEXITSTATUS(status) != 0)
     return Error{Code::failed,
                  "it ended early (exit code " + std::to_string(WEXITSTATUS(status)) + ").", ""};
-  const char kind = bytes[at];
-  bytes.erase(0, at + 1);
-  if (kind == kNoMemory) return no_memory();
-  if (kind == kThrown) return Error{Code::failed, std::move(bytes), ""};
-  if (kind != kValue) return Error{Code::failed, "it gave no answer.", ""};
+  return {};
+}
+
+std::string all_of(const ByteSource& source) {
+  std::string bytes;
+  std::vector<char> block(1 << 16);
+  for (std::size_t n = block.size(); n == block.size();) {
+    n = source(block.data(), block.size());
+    bytes.append(block.data(), n);
+  }
   return bytes;
 }
 
 }  // namespace
 
-Result<std::string> run_in_child(const ChildWork& work, const ChildLimits& limits,
-                                 const Progress& progress, const std::function<void()>& copied) {
+Result<void> stream_from_child(const StreamWork& work, const ChildLimits& limits,
+                               const Progress& progress,
+                               const std::function<void(const ByteSource&)>& take,
+                               const std::function<void()>& copied) {
   using Clock = std::chrono::steady_clock;
   if (progress.cancelled()) return cancelled_error();
   int ends[2];
@@ -215,19 +234,49 @@ Result<std::string> run_in_child(const ChildWork& work, const ChildLimits& limit
   }
   ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
   Child child(pid, ends[0]);
-  std::string bytes;
-  std::size_t at = 0;
-  while (!child.drain(bytes)) {
-    at = tell_progress(bytes, at, progress);
-    if (progress.cancelled()) return cancelled_error();
-    if (std::chrono::duration<double>(Clock::now() - start).count() > limits.seconds) {
-      char text[64];
-      std::snprintf(text, sizeof text, "it found no end within %g s.", limits.seconds);
-      return Error{Code::failed, text, ""};
-    }
+  std::optional<Error> stopped;
+  const ByteSource source = [&](char* to, std::size_t count) {
+    return stopped ? std::size_t{0} : child.read(to, count, [&] {
+      if (progress.cancelled()) {
+        stopped = cancelled_error();
+      } else if (std::chrono::duration<double>(Clock::now() - start).count() > limits.seconds) {
+        char text[64];
+        std::snprintf(text, sizeof text, "it found no end within %g s.", limits.seconds);
+        stopped = Error{Code::failed, text, ""};
+      }
+      return !stopped;
+    });
+  };
+  ProgressHead head;
+  std::string said;
+  while (source(&head.kind, 1) == 1 && head.kind == kProgress) {
+    if (source(reinterpret_cast<char*>(&head) + 1, sizeof head - 1) != sizeof head - 1) break;
+    said.resize(head.phase_length);
+    if (source(said.data(), said.size()) != said.size()) break;
+    progress.portion(0, 1, said).report(head.fraction);
   }
-  at = tell_progress(bytes, at, progress);
-  return judge(child.status(), std::move(bytes), at);
+  if (head.kind == kValue) take(source);
+  const std::string rest = all_of(source);
+  if (stopped) return *stopped;
+  child.wait();
+  if (const std::optional<Error> fault = fault_of(child.status())) return *fault;
+  if (head.kind == kNoMemory) return no_memory();
+  if (head.kind == kThrown) return Error{Code::failed, rest, ""};
+  if (head.kind != kValue) return Error{Code::failed, "it gave no answer.", ""};
+  return {};
+}
+
+Result<std::string> run_in_child(const ChildWork& work, const ChildLimits& limits,
+                                 const Progress& progress, const std::function<void()>& copied) {
+  std::string bytes;
+  const Result<void> done = stream_from_child(
+      [&](const ByteSink& sink, const Progress& through) {
+        const std::string answer = work(through);
+        sink(answer.data(), answer.size());
+      },
+      limits, progress, [&](const ByteSource& source) { bytes = all_of(source); }, copied);
+  if (!done) return done.error();
+  return bytes;
 }
 
 }  // namespace lamella

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "core/base/bytes.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
 
@@ -29,5 +30,13 @@ using ChildWork = std::function<std::string(const Progress&)>;
 Result<std::string> run_in_child(const ChildWork& work, const ChildLimits& limits,
                                  const Progress& progress,
                                  const std::function<void()>& copied = {});
+
+/// The same for answers that are large: `work` hands bytes to the sink, and `take` gets them from
+/// the source while the child still writes; neither keeps a copy. Progress is told until the first
+/// of them. What `take` made is worth something only when this returns no error.
+Result<void> stream_from_child(const std::function<void(const ByteSink&, const Progress&)>& work,
+                               const ChildLimits& limits, const Progress& progress,
+                               const std::function<void(const ByteSource&)>& take,
+                               const std::function<void()>& copied = {});
 
 }  // namespace lamella

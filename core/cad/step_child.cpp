@@ -16,13 +16,6 @@ namespace {
 
 // What goes through the pipe, in one order for both ends: `io` writes or reads.
 
-template <class Io, class E>
-void members(Io& io, E& error) requires std::is_same_v<std::remove_const_t<E>, Error> {
-  io.value(error.code);
-  io.text(error.message);
-  io.text(error.hint);
-}
-
 template <class Io, class P>
 void members(Io& io, P& part) requires std::is_same_v<std::remove_const_t<P>, Part> {
   io.text(part.name);
@@ -90,11 +83,11 @@ std::uint64_t default_memory() {
 }  // namespace
 
 std::string to_bytes(const StepContent& content, const Result<void>& outcome) {
-  ByteWriter out;
-  const std::optional<Error> error = outcome ? std::nullopt : std::optional(outcome.error());
-  out.maybe(error, [&](const Error& e) { members(out, e); });
-  members(out, content);
-  return out.take();
+  return bytes_of([&](ByteWriter& out) {
+    const std::optional<Error> error = outcome ? std::nullopt : std::optional(outcome.error());
+    out.maybe(error, [&](const Error& e) { members(out, e); });
+    members(out, content);
+  });
 }
 
 bool from_bytes(const std::string& bytes, StepContent& content, Result<void>& outcome) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/atomic_file.h"
+#include "core/io/medit_binary.h"
 #include "core/io/words.h"
 #include "core/mesh/interfaces.h"
 
@@ -128,13 +129,12 @@ class Reader {
   std::int64_t limit_ = 0;  ///< number of vertices
 };
 
-/// The whole file; refuses an empty and a binary one.
+/// The whole file as text; refuses an empty one.
 Result<std::string> read_text(const std::filesystem::path& file) {
   auto text = read_file(file);
   if (!text) return text.error();
   if (std::string_view(*text).substr(0, 64).find('\0') != std::string_view::npos)
-    return Error{Code::bad_input, file.string() + " is binary; only ASCII Medit files are read.",
-                 "Convert it, for instance with: gmsh in.meshb -save -o out.mesh"};
+    return text_of_medit_binary(file, *text);
   if (Words(*text).next().empty())
     return Error{Code::bad_input, file.string() + " is empty.",
                  "Check that it was written or copied completely."};
@@ -335,6 +335,15 @@ Result<SimplexMesh<D>> read_medit(const std::filesystem::path& file, const Progr
 template <int D>
 Result<void> write_medit(const SimplexMesh<D>& mesh, const std::filesystem::path& file,
                          const Progress& progress) {
+  if (is_medit_binary(file)) {
+    if constexpr (D == 4)
+      return Error{Code::usage, "\"" + file.string() + "\": .meshb knows no 4D mesh.",
+                   "Use .mesh."};
+    else if (progress.cancelled())
+      return cancelled_error();
+    else
+      return write_file(file, medit_binary<D>(mesh, refs_of(mesh.bodies), refs_of(mesh.groups)));
+  }
   TextBuilder out;
   out << "MeshVersionFormatted 2\n\nDimension " << D << "\n\nVertices\n"
       << mesh.node_count() << '\n';

@@ -10,13 +10,18 @@
 
 namespace lamella {
 
+/// By its ending, .mesh or .meshb.
+inline bool names_medit(const std::filesystem::path& file) {
+  return file.extension() == ".mesh" || file.extension() == ".meshb";
+}
+
 /// A mesh whose dimension only the file knows.
 using AnyMesh = std::variant<SimplexMesh<2>, SimplexMesh<3>, SimplexMesh<4>>;
 
-/// A Medit ASCII .mesh. Tetrahedra make it 3D with the Triangles as boundary; without any, the
-/// Triangles of a planar file are the elements and the Edges the boundary. In Dimension 4, vertices
-/// have four coordinates and a reference; the section Pentatopes, five nodes and a reference, holds
-/// the elements and Tetrahedra the boundary.
+/// A Medit .mesh, or binary .meshb. Tetrahedra make it 3D with the Triangles as boundary; without
+/// any, the Triangles of a planar file are the elements and the Edges the boundary. In Dimension 4,
+/// vertices have four coordinates and a reference; the section Pentatopes, five nodes and a
+/// reference, holds the elements and Tetrahedra the boundary.
 ///
 /// Nodes keep their numbers, used or not, so that a .sol file fits. The reference of an element
 /// names its body and that of a boundary face its group: reference r reads as the name "ref r", and
@@ -30,8 +35,9 @@ Result<AnyMesh> read_medit(const std::filesystem::path& file, const Progress& pr
 template <int D>
 Result<SimplexMesh<D>> read_medit(const std::filesystem::path& file, const Progress& progress = {});
 
-/// Writes what `read_medit` reads, atomically. A body or group called "ref r" gets reference r when
-/// all of its kind are; otherwise references are positions from 1. Errors: io, cancelled.
+/// Writes what `read_medit` reads, atomically; binary, in 2D and 3D, by the ending .meshb. A body
+/// or group called "ref r" gets reference r when all of its kind are; otherwise references are
+/// positions from 1. Errors: io, cancelled.
 template <int D>
 Result<void> write_medit(const SimplexMesh<D>& mesh, const std::filesystem::path& file,
                          const Progress& progress = {});

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "core/base/atomic_file.h"
 #include "core/io/mesh_file.h"
@@ -24,23 +25,31 @@ const char* solid_called(std::int32_t type) {
   return nullptr;
 }
 
-/// Reads numbers in text or binary; after the first failure everything reads as zero.
+/// Reads numbers in text or binary, a piece of the file at a time; after the first failure
+/// everything reads as zero.
 class Reader {
  public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+  /// `size` is that of the file; nothing when it is no regular one, which is then read whole.
+  Reader(std::istream& stream, std::optional<std::uint64_t> size) : stream_(stream) {
+    left_in_stream_ = size.value_or(std::numeric_limits<std::uint64_t>::max());
+    if (size) return;
+    while (fill(window_.size() + 1)) {
+    }
+    left_in_stream_ = 0;
+  }
 
   bool failed() const { return failed_; }
   void fail() { failed_ = true; }
-  bool at_end() const { return at_ >= bytes_.size(); }
+  bool at_end() { return !fill(1); }
   void set_binary(bool binary) { binary_ = binary; }
-  std::size_t left() const { return bytes_.size() - at_; }
+  std::uint64_t left() const { return window_.size() - at_ + left_in_stream_; }
 
-  /// Next line without its end.
+  /// Next line without its end; valid until more is read.
   std::string_view line() {
     if (at_end()) return fail(), std::string_view{};
-    const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
-    std::string_view text = bytes_.substr(at_, end - at_);
-    at_ = std::min(end + 1, bytes_.size());
+    const std::size_t length = find('\n', 0);
+    std::string_view text(window_.data() + at_, length);
+    at_ = std::min(at_ + length + 1, window_.size());
     if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
     return text;
   }
@@ -54,22 +63,28 @@ class Reader {
   }
   /// Leaves the section `name`, from anywhere inside.
   void leave(std::string_view name) {
-    const std::size_t end = bytes_.find("$End" + std::string(name), at_);
-    if (end == std::string_view::npos) {
-      fail();
-      at_ = bytes_.size();
-      return;
+    const std::string end = "$End" + std::string(name);
+    while (fill(end.size())) {
+      const std::size_t at = window_.find(end, at_);
+      if (at != window_.npos) {
+        at_ = at;
+        line();
+        return;
+      }
+      at_ = window_.size() - end.size() + 1;
     }
-    at_ = end;
-    line();
+    fail();
+    at_ = window_.size();
   }
   template <class T>
   T text_number() {
-    while (at_ < bytes_.size() && std::isspace(static_cast<unsigned char>(bytes_[at_]))) ++at_;
+    while (fill(1) && std::isspace(static_cast<unsigned char>(window_[at_]))) ++at_;
+    fill(kLongestNumber);
     T v{};
-    const auto [end, ec] = std::from_chars(bytes_.data() + at_, bytes_.data() + bytes_.size(), v);
+    const auto [end, ec] =
+        std::from_chars(window_.data() + at_, window_.data() + window_.size(), v);
     if (ec != std::errc{}) return fail(), T{};
-    at_ = static_cast<std::size_t>(end - bytes_.data());
+    at_ = static_cast<std::size_t>(end - window_.data());
     return v;
   }
   std::int32_t integer() { return number<std::int32_t>(); }
@@ -88,25 +103,57 @@ class Reader {
     return failed_ ? 0 : static_cast<std::size_t>(n);
   }
   std::string quoted() {
-    const std::size_t open = bytes_.find('"', at_);
-    const std::size_t close = open == std::string_view::npos ? open : bytes_.find('"', open + 1);
-    if (close == std::string_view::npos) return fail(), std::string{};
-    at_ = close + 1;
-    return std::string(bytes_.substr(open + 1, close - open - 1));
+    const std::size_t open = find('"', 0);
+    const std::size_t close = find('"', open + 1);
+    if (at_ + close >= window_.size()) return fail(), std::string{};
+    std::string text = window_.substr(at_ + open + 1, close - open - 1);
+    at_ += close + 1;
+    return text;
   }
 
  private:
+  static constexpr std::size_t kPiece = 1 << 18, kLongestNumber = 512;
+
+  /// Sees to it that so many bytes can be looked at; false when the file has no more.
+  bool fill(std::size_t bytes) {
+    if (window_.size() - at_ >= bytes) return true;
+    if (left_in_stream_ == 0) return false;
+    window_.erase(0, at_);
+    at_ = 0;
+    while (window_.size() < bytes && left_in_stream_ > 0) {
+      const std::size_t before = window_.size();
+      const auto piece = static_cast<std::size_t>(
+          std::min<std::uint64_t>(std::max(kPiece, before), left_in_stream_));
+      window_.resize(before + piece);
+      stream_.read(window_.data() + before, static_cast<std::streamsize>(piece));
+      const auto got = static_cast<std::size_t>(stream_.gcount());
+      window_.resize(before + got);
+      left_in_stream_ = got < piece ? 0 : left_in_stream_ - got;
+    }
+    return window_.size() >= bytes;
+  }
+  /// How far from here the character is, `from` at least; without it, where the file ends.
+  std::size_t find(char c, std::size_t from) {
+    for (;;) {
+      const std::size_t at = window_.find(c, at_ + from);
+      if (at != window_.npos) return at - at_;
+      from = std::max(from, window_.size() - at_);
+      if (!fill(from + 1)) return window_.size() - at_;
+    }
+  }
   template <class T>
   T number() {
     if (failed_) return T{};
     if (!binary_) return text_number<T>();
-    if (left() < sizeof(T)) return fail(), T{};
+    if (!fill(sizeof(T))) return fail(), T{};
     T v;
-    std::memcpy(&v, bytes_.data() + at_, sizeof(T));
+    std::memcpy(&v, window_.data() + at_, sizeof(T));
     at_ += sizeof(T);
     return v;
   }
-  std::string_view bytes_;
+  std::istream& stream_;
+  std::uint64_t left_in_stream_ = 0;
+  std::string window_;
   std::size_t at_ = 0;
   bool binary_ = false, failed_ = false;
 };
@@ -117,14 +164,18 @@ struct Raw {
   std::map<std::pair<int, std::int32_t>, std::int32_t> physical;  // entity -> first physical tag
   std::vector<std::uint32_t> tags;
   std::vector<Vec<3>> points;
-  struct Simplices {
+  /// A stretch of `elements` or `facets`.
+  struct Block {
     int dimension = 0;
     std::int32_t entity = 0;
     std::int32_t physical = 0;  ///< of version 2.2; 0: that of the entity
-    std::vector<std::uint32_t> tags;
-    std::vector<std::uint32_t> nodes;  ///< so many for each tag
+    std::size_t count = 0;
   };
-  std::vector<Simplices> blocks;
+  std::vector<Block> blocks;
+  // With the tags of the nodes; a tag above the largest NodeId stands there as a negative one.
+  std::vector<SimplexMesh<3>::Element> elements;
+  std::vector<SimplexMesh<3>::Facet> facets;
+  std::vector<std::uint32_t> element_tags;
   struct Field {
     std::string name;
     bool of_nodes = true;
@@ -142,6 +193,19 @@ struct Raw {
     if (!other_solid) other_solid = solid_called(type);
     if (type == kTriangle || type == kTriangle2) return 3;
     return type == kTetrahedron || type == kTetrahedron2 ? 4 : 0;
+  }
+  /// Reads the nodes of an element, of which the corners are kept.
+  void read_nodes_of(Reader& r, std::uint32_t tag, int nodes, int corners) {
+    SimplexMesh<3>::Element v{};
+    for (int k = 0; k < nodes; ++k)
+      if (const std::uint32_t node = r.tag(); k < corners) v[k] = static_cast<NodeId>(node);
+    if (corners == 4) {
+      elements.push_back(v);
+      element_tags.push_back(tag);
+    } else if (corners == 3) {
+      facets.push_back({v[0], v[1], v[2]});
+    }
+    if (corners > 0) ++blocks.back().count;
   }
 };
 
@@ -208,7 +272,7 @@ void read_elements(Reader& r, Raw& raw) {
   const std::size_t blocks = r.count(4);
   for (int i = 0; i < 3; ++i) r.size();
   for (std::size_t b = 0; b < blocks && !r.failed(); ++b) {
-    Raw::Simplices block;
+    Raw::Block block;
     block.dimension = r.integer();
     block.entity = r.integer();
     const std::int32_t type = r.integer();
@@ -216,18 +280,18 @@ void read_elements(Reader& r, Raw& raw) {
     const int nodes = nodes_of_type(type);
     if (nodes == 0) return r.fail();
     const int corners = n > 0 ? raw.corners_of(type) : 0;
-    const bool wanted = corners > 0;
-    if (wanted) block.nodes.reserve(n * static_cast<std::size_t>(corners));
-    if (wanted) block.tags.reserve(n);
+    if (corners > 0) {
+      block.dimension = corners - 1;
+      raw.blocks.push_back(block);
+    }
+    if (corners == 4) {
+      raw.elements.reserve(raw.elements.size() + n);
+      raw.element_tags.reserve(raw.element_tags.size() + n);
+    }
     for (std::size_t i = 0; i < n && !r.failed(); ++i) {
       const std::uint32_t tag = r.tag();
-      if (wanted) block.tags.push_back(tag);
-      for (int k = 0; k < nodes; ++k) {
-        const std::uint32_t v = r.tag();
-        if (k < corners) block.nodes.push_back(v);
-      }
+      raw.read_nodes_of(r, tag, nodes, corners);
     }
-    if (wanted) raw.blocks.push_back(std::move(block));
   }
 }
 
@@ -245,6 +309,8 @@ void read_nodes_22(Reader& r, Raw& raw) {
 
 void read_elements_22(Reader& r, Raw& raw) {
   const std::size_t n = r.count(8);
+  raw.elements.reserve(n);
+  raw.element_tags.reserve(n);
   for (std::size_t i = 0; i < n && !r.failed(); ++i) {
     const std::uint32_t tag = r.tag();
     const std::int32_t type = r.integer();
@@ -264,11 +330,8 @@ void read_elements_22(Reader& r, Raw& raw) {
     const int dimension = corners - 1;
     if (raw.blocks.empty() || raw.blocks.back().dimension != dimension ||
         raw.blocks.back().entity != tags[1] || raw.blocks.back().physical != tags[0])
-      raw.blocks.push_back({dimension, tags[1], tags[0], {}, {}});
-    Raw::Simplices& block = raw.blocks.back();
-    block.tags.push_back(tag);
-    for (int k = 0; k < nodes; ++k)
-      if (const std::uint32_t v = r.tag(); k < corners) block.nodes.push_back(v);
+      raw.blocks.push_back({dimension, tags[1], tags[0], 0});
+    raw.read_nodes_of(r, tag, nodes, corners);
   }
 }
 
@@ -286,6 +349,10 @@ void read_data(Reader& r, Raw& raw, bool of_nodes) {
   if (tags.size() < 3 || tags[1] < 1 || tags[1] > 9 || tags[2] < 0) return r.fail();
   r.line();
   field.components = tags[1];
+  const auto count = static_cast<std::size_t>(tags[2]);
+  if (count > r.left() / 4 + 1) return r.fail();
+  field.tags.reserve(count);
+  field.values.reserve(count * static_cast<std::size_t>(field.components));
   for (std::int32_t i = 0; i < tags[2] && !r.failed(); ++i) {
     field.tags.push_back(static_cast<std::uint32_t>(r.integer()));
     for (int c = 0; c < field.components; ++c) field.values.push_back(r.real());
@@ -371,9 +438,7 @@ bool take_nodes(const Raw::Field& field, const Numbers& numbers, MeshContent& ou
 /// The same of elements. What has no value gets 0.
 bool take_elements(const Raw::Field& field, const Raw& raw, MeshContent& out) {
   if (field.components != 1 && field.components != 9) return true;
-  std::vector<std::uint32_t> tags;
-  for (const Raw::Simplices& block : raw.blocks)
-    if (block.dimension == 3) tags.insert(tags.end(), block.tags.begin(), block.tags.end());
+  const std::vector<std::uint32_t>& tags = raw.element_tags;
   const Numbers numbers(tags);
   std::vector<std::size_t> element(tags.size() + 1);
   for (std::size_t e = 0; e < tags.size(); ++e) element[numbers.of(tags[e])] = e;
@@ -415,52 +480,50 @@ bool assemble(Raw& raw, MeshContent& out) {
       mesh.groups.push_back(name);
     }
   }
-  std::size_t elements = 0;
-  for (const Raw::Simplices& block : raw.blocks)
-    if (block.dimension == 3) elements += block.nodes.size() / 4;
-  mesh.elements.reserve(elements);
-  mesh.element_body.reserve(elements);
-  for (Raw::Simplices& block : raw.blocks) {
+  const auto number = [&](auto& simplices) {
+    for (auto& simplex : simplices)
+      for (NodeId& v : simplex)
+        if ((v = numbers.of(static_cast<std::uint32_t>(v))) == 0) return false;
+    return true;
+  };
+  mesh.elements = std::move(raw.elements);
+  mesh.facets = std::move(raw.facets);
+  if (!number(mesh.elements) || !number(mesh.facets)) return false;
+  mesh.element_body.reserve(mesh.elements.size());
+  for (const Raw::Block& block : raw.blocks) {
     const auto it = raw.physical.find({block.dimension, block.entity});
     const std::int32_t tag = block.physical != 0        ? block.physical
                              : it == raw.physical.end() ? block.entity
                                                         : it->second;
-    const bool solid = block.dimension == 3;
-    const std::size_t corners = solid ? 4 : 3;
-    const std::int32_t index = solid ? index_of(bodies, mesh.bodies, tag, "body")
-                                     : index_of(groups, mesh.groups, tag, "group");
-    for (std::size_t at = 0; at + corners <= block.nodes.size(); at += corners) {
-      std::array<NodeId, 4> v{};
-      for (std::size_t k = 0; k < corners; ++k) {
-        v[k] = numbers.of(block.nodes[at + k]);
-        if (v[k] == 0) return false;
-      }
-      if (solid) {
-        mesh.elements.push_back(v);
-        mesh.element_body.push_back(index);
-      } else {
-        mesh.facets.push_back({v[0], v[1], v[2]});
-        mesh.facet_group.push_back(index);
-        mesh.facet_face.push_back(block.entity - 1);
-      }
+    if (block.dimension == 3) {
+      const std::int32_t index = index_of(bodies, mesh.bodies, tag, "body");
+      mesh.element_body.insert(mesh.element_body.end(), block.count, index);
+    } else {
+      const std::int32_t index = index_of(groups, mesh.groups, tag, "group");
+      mesh.facet_group.insert(mesh.facet_group.end(), block.count, index);
+      mesh.facet_face.insert(mesh.facet_face.end(), block.count, block.entity - 1);
     }
-    block.nodes = {};
   }
-  for (const Raw::Field& field : raw.fields)
+  for (Raw::Field& field : raw.fields) {
     if (!(field.of_nodes ? take_nodes(field, numbers, out) : take_elements(field, raw, out)))
       return false;
+    field = {};  // meshes are large: nothing is kept twice for longer than needed
+  }
   return true;
 }
 
 }  // namespace
 
 Result<MeshContent> read_msh(const std::filesystem::path& file) {
-  Result<std::string> bytes = read_file(file);
-  if (!bytes) return bytes.error();
+  Result<std::ifstream> stream = open_to_read(file);
+  if (!stream) return stream.error();
   const auto refuse = [&](const std::string& finding, const std::string& hint) {
     return Error{Code::bad_input, "\"" + file.string() + "\": " + finding + ".", hint};
   };
-  Reader r(*bytes);
+  std::error_code ec;
+  const bool regular = std::filesystem::is_regular_file(file, ec);
+  const std::uint64_t size = regular ? std::filesystem::file_size(file, ec) : 0;
+  Reader r(*stream, regular ? std::optional(size) : std::nullopt);
   if (r.keyword() != "$MeshFormat")
     return refuse("not a Gmsh file, it does not begin with $MeshFormat",
                   "Check that the file is an MSH file.");
@@ -499,7 +562,6 @@ Result<MeshContent> read_msh(const std::filesystem::path& file) {
   if (raw.other_solid)
     return refuse(std::string("it holds ") + raw.other_solid,
                   "Only tetrahedra of first and second order can be used.");
-  bytes = std::string();
   MeshContent content;
   if (!assemble(raw, content))
     return refuse("an element or a value refers to a node that is not there",

@@ -58,7 +58,7 @@ MeshFormat medit() {
   MeshFormat f;
   f.name = "medit";
   f.title = "Medit";
-  f.endings = {".mesh"};
+  f.endings = {".mesh", ".meshb"};
   f.names = {.references = true};
   f.write = [](const SimplexMesh<3>& mesh, const MeshFields&, const fs::path& file,
                const Progress& p) { return without_notes(write_medit<3>(mesh, file, p)); };

@@ -1,5 +1,8 @@
 #include "core/io/read_in_child.h"
 
+#include <optional>
+#include <type_traits>
+
 #include "core/base/bytes.h"
 #include "core/base/child_process.h"
 
@@ -8,7 +11,7 @@ namespace {
 
 // What goes through the pipe, in one order for both ends: `io` writes or reads.
 template <class Io, class C>
-void members(Io& io, C& content) {
+void members(Io& io, C& content) requires std::is_same_v<std::remove_const_t<C>, MeshContent> {
   auto& mesh = content.mesh;
   io.array(mesh.points);
   io.array(mesh.elements);
@@ -40,19 +43,6 @@ void members(Io& io, C& content) {
   io.text(content.provenance);
 }
 
-std::string to_bytes(const Result<MeshContent>& result) {
-  ByteWriter out;
-  out.value(result.ok());
-  if (result.ok()) {
-    members(out, *result);
-  } else {
-    out.value(result.error().code);
-    out.text(result.error().message);
-    out.text(result.error().hint);
-  }
-  return out.take();
-}
-
 }  // namespace
 
 Result<MeshContent> read_in_child(
@@ -63,29 +53,32 @@ Result<MeshContent> read_in_child(
   const std::uintmax_t found = std::filesystem::file_size(file, ec);
   const double size = ec ? 0 : static_cast<double>(found);
   const ChildLimits limits{60 + 1e-6 * size, static_cast<std::uint64_t>(1e9 + 100 * size)};
-  const Result<std::string> bytes = run_in_child(
-      [&](const Progress& through) { return to_bytes(read(file, through)); }, limits, progress);
   const auto damaged = [&](const std::string& how) {
     return Error{Code::bad_input, "\"" + file.string() + "\": it could not be read, " + how,
                  "The file is likely damaged; write or copy it again."};
   };
-  if (!bytes) {
-    if (bytes.error().code == Code::cancelled) return bytes.error();
-    return damaged(bytes.error().message);
-  }
-  ByteReader in(*bytes);
-  bool good = false;
-  in.value(good);
-  if (!good) {
-    Error error;
-    in.value(error.code);
-    in.text(error.message);
-    in.text(error.hint);
-    return in.done() ? error : damaged("its reader gave no answer.");
-  }
   MeshContent content;
-  members(in, content);
-  if (!in.done()) return damaged("its reader gave no answer.");
+  std::optional<Error> error;
+  bool whole = false;
+  const Result<void> done = stream_from_child(
+      [&](const ByteSink& sink, const Progress& through) {
+        const Result<MeshContent> result = read(file, through);
+        ByteWriter out(sink);
+        const std::optional<Error> refusal = result ? std::nullopt : std::optional(result.error());
+        out.maybe(refusal, [&](const Error& e) { members(out, e); });
+        if (result) members(out, *result);
+      },
+      limits, progress,
+      [&](const ByteSource& source) {
+        ByteReader in(source, limits.bytes);
+        in.maybe(error, [&](Error& e) { members(in, e); });
+        if (!error) members(in, content);
+        whole = in.done();
+      });
+  if (!done && done.error().code == Code::cancelled) return done.error();
+  if (!done) return damaged(done.error().message);
+  if (!whole) return damaged("its reader gave no answer.");
+  if (error) return *error;
   return content;
 }
 

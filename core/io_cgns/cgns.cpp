@@ -9,6 +9,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/version.h"
 #include "core/io/facet_sides.h"
+#include "core/io/read_in_child.h"
 
 namespace lamella {
 
@@ -318,7 +319,10 @@ MeshFormat cgns_format() {
     if (Result<void> done = write_cgns(mesh, fields, file, progress); !done) return done.error();
     return MeshFormat::Notes{};
   };
-  format.read = read_cgns;
+  // The library believes the lengths that a damaged file states, and can crash of it.
+  format.read = [](const std::filesystem::path& file, const Progress& progress) {
+    return read_in_child(file, read_cgns, progress);
+  };
   return format;
 }
 

@@ -8,6 +8,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/version.h"
 #include "core/io/facet_sides.h"
+#include "core/io/read_in_child.h"
 
 namespace lamella {
 
@@ -349,7 +350,10 @@ MeshFormat med_format() {
     if (Result<void> done = write_med(mesh, fields, file, progress); !done) return done.error();
     return MeshFormat::Notes{};
   };
-  format.read = read_med;
+  // The library believes the lengths that a damaged file states, and can crash of it.
+  format.read = [](const std::filesystem::path& file, const Progress& progress) {
+    return read_in_child(file, read_med, progress);
+  };
   return format;
 }
 

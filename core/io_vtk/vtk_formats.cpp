@@ -1,6 +1,7 @@
 #include "core/io_vtk/vtk_formats.h"
 
 #include "core/io/read_in_child.h"
+#include "core/io/vtu.h"
 #include "core/io_vtk/exodus.h"
 #include "core/io_vtk/vtu.h"
 
@@ -29,7 +30,9 @@ std::vector<MeshFormat> vtk_formats() {
   vtu.filling = vtu.metric = vtu.provenance = vtu.names.exact = true;
   vtu.write = plain(write_vtu);
   // VTK and its netCDF believe the lengths that a damaged file states.
-  vtu.read = [](const std::filesystem::path& file, const Progress& progress) {
+  vtu.read = [](const std::filesystem::path& file,
+                const Progress& progress) -> Result<MeshContent> {
+    if (auto content = read_appended_vtu(file, progress)) return std::move(*content);
     return read_in_child(
         file, [](const std::filesystem::path& f, const Progress&) { return read_vtu(f); },
         progress);

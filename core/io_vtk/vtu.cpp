@@ -1,6 +1,5 @@
 #include "core/io_vtk/vtu.h"
 
-#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -8,33 +7,24 @@
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkIdList.h>
-#include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
-#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
 
 #include "core/base/atomic_file.h"
-#include "core/base/version.h"
 #include "core/io/mesh_file.h"
+#include "core/io/read_in_child.h"
+#include "core/io/vtu.h"
 
 namespace lamella {
 
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-/// Row and column of the six components, in the order VTK has for symmetric tensors.
-constexpr std::array<std::array<int, 2>, 6> kTensor = {
-    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
 
 /// VTK prints its complaints; we return ours. Silent while it lives.
 class Quiet {
@@ -47,108 +37,6 @@ class Quiet {
  private:
   int before_;
 };
-
-void add_strings(vtkFieldData* data, const char* name, const std::vector<std::string>& values) {
-  vtkNew<vtkStringArray> array;
-  array->SetName(name);
-  for (const std::string& value : values) array->InsertNextValue(value);
-  data->AddArray(array);
-}
-
-void add_node_scalar(vtkUnstructuredGrid* grid, const char* name,
-                     const std::vector<double>* values) {
-  if (!values) return;
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values->size()) - 1);
-  for (std::size_t v = 1; v < values->size(); ++v)
-    array->SetValue(static_cast<vtkIdType>(v - 1), (*values)[v]);
-  grid->GetPointData()->AddArray(array);
-}
-
-void add_node_field(vtkUnstructuredGrid* grid, const NodeField& field) {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(field.name.c_str());
-  array->SetNumberOfComponents(field.components);
-  array->SetNumberOfTuples(grid->GetNumberOfPoints());
-  const auto first = static_cast<std::size_t>(field.components);
-  for (std::size_t i = first; i < field.values.size(); ++i)
-    array->SetValue(static_cast<vtkIdType>(i - first), field.values[i]);
-  grid->GetPointData()->AddArray(array);
-}
-
-void add_metric(vtkUnstructuredGrid* grid, const MetricField<3>* metric) {
-  if (!metric) return;
-  vtkNew<vtkDoubleArray> array;
-  array->SetName("metric");
-  array->SetNumberOfComponents(6);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(metric->size()) - 1);
-  for (std::size_t v = 1; v < metric->size(); ++v)
-    for (int c = 0; c < 6; ++c)
-      array->SetComponent(static_cast<vtkIdType>(v - 1), c,
-                          (*metric)[v](kTensor[c][0], kTensor[c][1]));
-  grid->GetPointData()->AddArray(array);
-  grid->GetPointData()->SetActiveTensors("metric");
-}
-
-void fill(vtkUnstructuredGrid* grid, const SimplexMesh<3>& mesh, const MeshFields& fields) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.node_count()));
-  for (std::size_t v = 1; v < mesh.points.size(); ++v)
-    points->SetPoint(static_cast<vtkIdType>(v - 1), mesh.points[v].data());
-  grid->SetPoints(points);
-
-  const auto tets = static_cast<vtkIdType>(mesh.elements.size());
-  const auto cells = tets + static_cast<vtkIdType>(mesh.facets.size());
-  vtkNew<vtkCellArray> connectivity;
-  connectivity->AllocateExact(cells, 4 * tets + 3 * (cells - tets));
-  vtkNew<vtkUnsignedCharArray> types;
-  types->SetNumberOfValues(cells);
-  const auto add = [&](const auto& simplex, unsigned char type) {
-    std::array<vtkIdType, 4> ids{};
-    for (std::size_t k = 0; k < simplex.size(); ++k) ids[k] = simplex[k] - 1;
-    types->SetValue(connectivity->GetNumberOfCells(), type);
-    connectivity->InsertNextCell(static_cast<vtkIdType>(simplex.size()), ids.data());
-  };
-  for (const auto& element : mesh.elements) add(element, VTK_TETRA);
-  for (const auto& facet : mesh.facets) add(facet, VTK_TRIANGLE);
-  grid->SetCells(types, connectivity);
-
-  const auto add_ids = [&](const char* name, const std::vector<std::int32_t>* of_element,
-                           const std::vector<std::int32_t>* of_facet) {
-    vtkNew<vtkIntArray> array;
-    array->SetName(name);
-    array->SetNumberOfValues(cells);
-    array->FillValue(-1);
-    for (vtkIdType c = 0; of_element && c < tets; ++c) array->SetValue(c, (*of_element)[c]);
-    for (vtkIdType c = tets; of_facet && c < cells; ++c) array->SetValue(c, (*of_facet)[c - tets]);
-    grid->GetCellData()->AddArray(array);
-  };
-  add_ids("body", &mesh.element_body, nullptr);
-  add_ids("group", nullptr, &mesh.facet_group);
-  add_ids("face", nullptr, &mesh.facet_face);
-  const auto add_numbers = [&](const std::string& name, const std::vector<double>& of_element) {
-    vtkNew<vtkDoubleArray> array;
-    array->SetName(name.c_str());
-    array->SetNumberOfValues(cells);
-    for (vtkIdType c = 0; c < cells; ++c) array->SetValue(c, c < tets ? of_element[c] : kNan);
-    grid->GetCellData()->AddArray(array);
-  };
-  if (fields.quality) add_numbers("quality", *fields.quality);
-  for (const ElementField& field : fields.of_elements) add_numbers(field.name, field.values);
-  add_node_scalar(grid, "thickness", fields.thickness);
-  add_node_scalar(grid, "layers", fields.layers);
-  for (const NodeField& field : fields.of_nodes) add_node_field(grid, field);
-  add_metric(grid, fields.metric);
-
-  add_strings(grid->GetFieldData(), "body_names", mesh.bodies);
-  add_strings(grid->GetFieldData(), "group_names", mesh.groups);
-  add_strings(grid->GetFieldData(), "unit", {unit_name(fields.unit)});
-  add_strings(grid->GetFieldData(), "generator", {"Lamella " + version()});
-  if (!fields.provenance.empty())
-    add_strings(grid->GetFieldData(), "provenance", {fields.provenance});
-}
 
 std::vector<std::string> strings_of(vtkFieldData* data, const char* name) {
   std::vector<std::string> values;
@@ -191,7 +79,7 @@ Metric<3> matrix_of(vtkDataArray* array, vtkIdType at) {
     return (m + m.transpose()) / 2;
   }
   for (int c = 0; c < 6; ++c) {
-    const auto [i, j] = kTensor[c];
+    const auto [i, j] = kVtkTensor[c];
     m(i, j) = m(j, i) = array->GetComponent(at, c);
   }
   return m;
@@ -321,43 +209,6 @@ bool consistent(vtkUnstructuredGrid* grid) {
          lengths(grid->GetCellData(), grid->GetNumberOfCells());
 }
 
-}  // namespace
-
-Result<void> write_vtu(const SimplexMesh<3>& mesh, const MeshFields& fields,
-                       const std::filesystem::path& file, const Progress& progress) {
-  if (progress.cancelled()) return cancelled_error();
-  Result<AtomicFile> target = AtomicFile::create(file);
-  if (!target) return target.error();
-  vtkNew<vtkUnstructuredGrid> grid;
-  fill(grid, mesh, fields);
-  progress.report(0.3);
-
-  const Quiet quiet;
-  vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  writer->SetFileName(target->temporary().c_str());
-  writer->SetInputData(grid);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressionLevel(1);  // three times as fast as 5, for a few percent
-  vtkNew<vtkCallbackCommand> watch;
-  watch->SetClientData(const_cast<Progress*>(&progress));
-  watch->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
-    const auto& p = *static_cast<const Progress*>(data);
-    auto* w = static_cast<vtkXMLUnstructuredGridWriter*>(caller);
-    p.report(0.3 + 0.7 * w->GetProgress());
-    if (p.cancelled()) w->SetAbortExecute(1);
-  });
-  writer->AddObserver(vtkCommand::ProgressEvent, watch);
-  const bool written = writer->Write() == 1;
-  if (progress.cancelled()) return cancelled_error();
-  if (!written)
-    return Error{Code::io, "\"" + file.string() + "\": writing failed.",
-                 "Check the space on the disk."};
-  return target->commit();
-}
-
-namespace {
-
 Result<vtkSmartPointer<vtkUnstructuredGrid>> read_grid(const std::filesystem::path& file) {
   // VTK's parser takes anything it is given; what is no VTU file at all is better told before.
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
@@ -430,6 +281,31 @@ void add_cell_fields(vtkUnstructuredGrid* grid, const SimplexMesh<3>& mesh,
   }
 }
 
+Result<MeshContent> solver_result(const std::filesystem::path& file, const Progress&) {
+  const Quiet quiet;
+  const auto grid = read_grid(file);
+  if (!grid) return grid.error();
+  vtkSmartPointer<vtkUnstructuredGrid> cut = *grid;
+  for (vtkIdType c = 0; c < cut->GetNumberOfCells(); ++c) {
+    const int type = cut->GetCellType(c);
+    if (type == VTK_TETRA || type == VTK_TRIANGLE) continue;
+    vtkNew<vtkDataSetTriangleFilter> cutter;
+    cutter->SetInputData(cut);
+    cutter->TetrahedraOnlyOn();
+    cutter->Update();
+    cut = cutter->GetOutput();
+    break;
+  }
+  MeshContent all;
+  take(cut, all);
+  if (all.mesh.elements.empty()) return no_tetrahedra(file);
+  MeshContent out;
+  out.mesh = std::move(all.mesh);
+  out.of_nodes = node_fields_of(cut);
+  add_cell_fields(cut, out.mesh, out.of_nodes);
+  return out;
+}
+
 }  // namespace
 
 Result<MeshContent> read_vtu(const std::filesystem::path& file) {
@@ -447,27 +323,8 @@ Result<MeshContent> read_vtu(const std::filesystem::path& file) {
   return content;
 }
 
-Result<SolverResult> read_vtu_result(const std::filesystem::path& file) {
-  const Quiet quiet;
-  const auto grid = read_grid(file);
-  if (!grid) return grid.error();
-  vtkSmartPointer<vtkUnstructuredGrid> cut = *grid;
-  for (vtkIdType c = 0; c < cut->GetNumberOfCells(); ++c) {
-    const int type = cut->GetCellType(c);
-    if (type == VTK_TETRA || type == VTK_TRIANGLE) continue;
-    vtkNew<vtkDataSetTriangleFilter> cutter;
-    cutter->SetInputData(cut);
-    cutter->TetrahedraOnlyOn();
-    cutter->Update();
-    cut = cutter->GetOutput();
-    break;
-  }
-  MeshContent content;
-  take(cut, content);
-  if (content.mesh.elements.empty()) return no_tetrahedra(file);
-  SolverResult out{std::move(content.mesh), node_fields_of(cut)};
-  add_cell_fields(cut, out.mesh, out.fields);
-  return out;
+Result<MeshContent> read_vtu_result(const std::filesystem::path& file, const Progress& progress) {
+  return read_in_child(file, solver_result, progress);
 }
 
 }  // namespace lamella

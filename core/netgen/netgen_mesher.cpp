@@ -102,10 +102,10 @@ std::string run_netgen(const ReferenceSurface<3>& surface) {
     nglib::Ng_GetVolumeElement(library.get(), i, v);
     tetrahedra.push_back({v[0], v[1], v[2], v[3]});
   }
-  ByteWriter bytes;
-  bytes.array(inside);
-  bytes.array(tetrahedra);
-  return bytes.take();
+  return bytes_of([&](ByteWriter& out) {
+    out.array(inside);
+    out.array(tetrahedra);
+  });
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "core/natural/natural_metric.h"
 #include "core/study/first_mesh.h"
@@ -13,8 +14,27 @@ namespace {
 
 /// Bytes a node takes at the most while the flow is solved (measured, rounded up).
 constexpr double kFlowBytesANode = 3000;
+/// The same of a facet while it is filled (a ribbed tray of 72,000 triangles: 740 and 3,100).
+constexpr double kGenerateBytesAFacet = 1000, kNetgenBytesAFacet = 4000;
 
 }  // namespace
+
+double flow_memory(double nodes) { return 1e-6 * kFlowBytesANode * nodes; }
+
+double first_mesh_memory(std::size_t facets, bool by_netgen) {
+  return 1e-6 * (by_netgen ? kNetgenBytesAFacet : kGenerateBytesAFacet) *
+         static_cast<double>(facets);
+}
+
+Result<void> within_memory(const std::string& what, double needed, std::optional<double> allowed,
+                           const std::string& hint) {
+  if (!allowed || needed <= *allowed) return {};
+  const auto whole = [](double x) { return std::to_string(std::llround(std::ceil(x))); };
+  return Error{Code::memory,
+               what + " " + whole(needed) + " MB are to be expected, above the " + whole(*allowed) +
+                   " MB allowed.",
+               hint};
+}
 
 std::optional<FlowForecast> forecast_flow(const Study& study, const std::string& body,
                                           const MeshForecast& mesh) {
@@ -24,7 +44,7 @@ std::optional<FlowForecast> forecast_flow(const Study& study, const std::string&
   const double growth = study.flow->rounds > 0 ? study.flow->growth : 1;
   out.mesh.elements = growth * mesh.elements;
   out.mesh.nodes = growth * mesh.nodes;
-  out.mesh.memory = std::max(growth * mesh.memory, 1e-6 * kFlowBytesANode * out.mesh.nodes);
+  out.mesh.memory = std::max(growth * mesh.memory, flow_memory(out.mesh.nodes));
   return out;
 }
 

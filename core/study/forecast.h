@@ -52,4 +52,15 @@ Result<std::vector<BodyForecast>> forecast_from(const std::vector<FirstMesh>& fi
                                                 const Study& study, const std::vector<Part>& parts,
                                                 const Progress& progress = {});
 
+/// MB that solving a flow through so many nodes takes at the most.
+double flow_memory(double nodes);
+
+/// MB that making a first mesh of so many facets takes at the most, by algorithm 2.1 or by Netgen.
+double first_mesh_memory(std::size_t facets, bool by_netgen);
+
+/// Fine as long as no more MB are needed than allowed. Errors: memory; the message is `what`, a
+/// beginning as "The flow through 5 nodes: about", and both numbers.
+Result<void> within_memory(const std::string& what, double needed, std::optional<double> allowed,
+                           const std::string& hint);
+
 }  // namespace lamella

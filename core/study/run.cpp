@@ -297,13 +297,10 @@ class BodyLoop {
     // With the flow, which solves on the mesh and then refines it.
     const std::optional<FlowForecast> flow = forecast_flow(study_, part_.name, forecast_);
     const MeshForecast& most = flow ? flow->mesh : forecast_;
-    if (!options_.memory || most.memory <= *options_.memory) return {};
-    const auto whole = [](double x) { return std::to_string(std::llround(x)); };
-    return Error{Code::memory,
-                 "Body \"" + part_.name + "\": about " + whole(most.nodes) + " nodes and " +
-                     whole(most.memory) + " MB are to be expected, above the " +
-                     whole(*options_.memory) + " MB allowed.",
-                 "Allow more memory, ask for fewer layers, or raise h_min or a size."};
+    return within_memory("Body \"" + part_.name + "\": about " +
+                             std::to_string(std::llround(most.nodes)) + " nodes and",
+                         most.memory, options_.memory,
+                         "Allow more memory, ask for fewer layers, or raise h_min or a size.");
   }
 
   /// n, or less in the first iterations of a progressive run; the last two get n.

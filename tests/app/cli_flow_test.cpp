@@ -43,6 +43,17 @@ TEST_F(CliFlow, TellsRatesThatBalanceAndWritesTheFields) {
   EXPECT_NE(out.find("gate: pressure 1 MPa"), std::string::npos);
 }
 
+TEST_F(CliFlow, MoreMemoryThanAllowedIsToldBeforeTheWork) {
+  EXPECT_EQ(run("flow c.msh --gate gate --vent vent -o f.vtu --memory 0.1 --json"), 6);
+  EXPECT_NE(err.find("flow through " + std::to_string(mesh.node_count()) + " nodes: about"),
+            std::string::npos)
+      << err;
+  EXPECT_NE(err.find("MB allowed"), std::string::npos) << err;
+  EXPECT_EQ(out.find("\"flow\""), std::string::npos) << "nothing was solved";
+  EXPECT_FALSE(std::filesystem::exists(folder / "f.vtu"));
+  EXPECT_EQ(run("flow c.msh --gate gate --vent vent -o f.vtu --memory 500"), 0) << err;
+}
+
 TEST_F(CliFlow, EveryMethodWritesAMetricWithinItsBounds) {
   for (const std::string method :
        {"acceleration", "velocity", "strain", "combined", "direction", "residual", "directional"}) {

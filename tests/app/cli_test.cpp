@@ -389,6 +389,17 @@ TEST_F(Cli, StlUnitsAreHonored) {
   EXPECT_NEAR((*body)["volume"], 6 * 25.4 * 25.4 * 25.4, 1e-6);
 }
 
+TEST_F(Cli, GenerateTellsBeforehandThatTheMemoryWillNotDo) {
+  write("box.stl", box_stl(3, 4, 5));
+  EXPECT_EQ(run("generate box.stl -o box.msh --memory 0.001"), 6);
+  EXPECT_NE(err.find("whose surface has 12 triangles: about 1 MB"), std::string::npos) << err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "box.msh"));
+  EXPECT_EQ(run("generate box.stl -o box.msh --memory 100"), 0) << err;
+  // Algorithm 2.1 alone: Netgen would not fit.
+  EXPECT_EQ(run("generate box.stl -o box.msh --memory 0.03"), 0) << err;
+  EXPECT_EQ(run("generate box.stl -o box.msh --memory 0.03 --mesher netgen"), 6);
+}
+
 TEST_F(Cli, GenerateFillsASurface) {
   write("box.stl", box_stl(3, 2, 1));
   ASSERT_EQ(run("generate box.stl -o box.mesh --json"), 0) << err;

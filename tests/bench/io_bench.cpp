@@ -1,5 +1,8 @@
 #include <benchmark/benchmark.h>
 
+#include <fstream>
+#include <string>
+
 #include "core/io/mesh_file.h"
 #include "core/io_vtk/vtk_formats.h"
 #include "core/mesh/sample_meshes.h"
@@ -24,9 +27,32 @@ struct Case {
   }
 };
 
+/// A line of /proc/self/status in MB.
+double status_mb(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (double kb = 0; word == key && status >> kb) return kb / 1000;
+  return 0;
+}
+
+/// Tells the most memory that was resident while it lived, above what was when it began.
+class Peak {
+ public:
+  explicit Peak(benchmark::State& state) : state_(state) {
+    std::ofstream("/proc/self/clear_refs") << 5;  // VmHWM begins anew
+    before_ = status_mb("VmRSS:");
+  }
+  ~Peak() { state_.counters["MB_above"] = status_mb("VmHWM:") - before_; }
+
+ private:
+  benchmark::State& state_;
+  double before_ = 0;
+};
+
 void write_million(benchmark::State& state, const char* name) {
   const Case made;
   const MeshFormat& format = **made.formats.called(name);
+  const Peak peak(state);
   for (auto _ : state)
     if (!format.write(made.mesh, made.fields, made.folder / ("m" + format.endings[0]), {}))
       return state.SkipWithError("not written");
@@ -37,6 +63,7 @@ void read_million(benchmark::State& state, const char* name) {
   const MeshFormat& format = **made.formats.called(name);
   const auto file = made.folder / ("m" + format.endings[0]);
   if (!format.write(made.mesh, made.fields, file, {})) return state.SkipWithError("not written");
+  const Peak peak(state);
   for (auto _ : state)
     if (!format.read(file, {})) return state.SkipWithError("not read");
 }
@@ -51,6 +78,7 @@ void save_million(benchmark::State& state) {
     if (!proof) return proof.error();
     return {};
   };
+  const Peak peak(state);
   for (auto _ : state)
     if (!save_project(content, made.folder / "m.lamella")) return state.SkipWithError("not saved");
 }

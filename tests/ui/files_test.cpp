@@ -93,11 +93,23 @@ TEST_F(WindowFiles, ReportNamesInputsExportsAndTheCommand) {
   EXPECT_TRUE(window_.banner().message().contains("Report written"));
 }
 
+QtMessageHandler handler_before = nullptr;
+QStringList complaints_of_timers;
+
 TEST_F(WindowFiles, ReportBecomesAPdfOfSomePages) {
   open_part("plate");
   run();
+  complaints_of_timers.clear();
+  handler_before = qInstallMessageHandler(
+      [](QtMsgType type, const QMessageLogContext& context, const QString& text) {
+        if (text.contains("Timer")) complaints_of_timers << text;
+        handler_before(type, context, text);
+      });
   session().save_report(folder_ / "r.pdf");
-  ASSERT_TRUE(wait_idle());
+  const bool done = wait_idle();
+  qInstallMessageHandler(handler_before);
+  ASSERT_TRUE(done);
+  EXPECT_EQ(complaints_of_timers, QStringList()) << "the worker is no thread of Qt";
   const std::string pdf = bytes("r.pdf");
   EXPECT_TRUE(pdf.starts_with("%PDF-"));
   EXPECT_GT(pdf.size(), 20000u);

@@ -31,7 +31,7 @@ class MeditTest : public testing::Test {
     EXPECT_NE(result.error().message.find("in.mesh"), std::string::npos);
   }
   template <int D>
-  void round_trip(SimplexMesh<D> mesh) const {
+  void round_trip(SimplexMesh<D> mesh, const char* name = "a.mesh") const {
     // Digits that need all 17 places, and references that are not 1, 2, 3.
     for (auto& x : mesh.points) x = x * (1 / 3.0) + Vec<D>::Constant(1e-17);
     mesh.groups = {"ref 4", "ref 7"};
@@ -40,8 +40,8 @@ class MeditTest : public testing::Test {
       mesh.facet_face[i] = mesh.facet_group[i] == 1 ? 7 : 4;
     }
     mesh.bodies = {"ref 10", "ref 20"};
-    ASSERT_TRUE(write_medit(mesh, path("a.mesh")).ok());
-    const auto back = read_medit<D>(path("a.mesh"));
+    ASSERT_TRUE(write_medit(mesh, path(name)).ok());
+    const auto back = read_medit<D>(path(name));
     ASSERT_TRUE(back.ok()) << back.error().message;
     EXPECT_TRUE(std::equal(mesh.points.begin() + 1, mesh.points.end(), back->points.begin() + 1));
     EXPECT_EQ(back->elements, mesh.elements);
@@ -64,6 +64,12 @@ TEST_F(MeditTest, MeshesComeBackBitForBit) {
   round_trip<2>(two_body_box<2>(4));
   round_trip<3>(two_body_box<3>(2));
   round_trip<4>(two_body_box<4>(2));
+}
+
+TEST_F(MeditTest, BinaryMeshesComeBackBitForBit) {
+  round_trip<2>(two_body_box<2>(4), "a.meshb");
+  round_trip<3>(two_body_box<3>(2), "a.meshb");
+  EXPECT_EQ(write_medit(two_body_box<4>(2), path("b.meshb")).error().code, Code::usage);
 }
 
 TEST_F(MeditTest, PentatopesAreTheElementsOf4D) {
@@ -156,7 +162,9 @@ TEST_F(MeditTest, RefusesWithOneClearSentence) {
   expect_refused("", Code::bad_input, "empty");
   expect_refused(" \n # only a comment\n", Code::bad_input, "empty");
   expect_refused("solid cube\n", Code::bad_input, "not a Medit file");
-  expect_refused(std::string("\1\0\0\0\3\0\0\0", 8), Code::bad_input, "binary");
+  expect_refused(std::string("\1\0\0\0\3\0\0\0", 8), Code::bad_input, "truncated");
+  expect_refused(std::string("\1\0\0\0\7\0\0\0", 8), Code::bad_input, "not a Medit file");
+  expect_refused(std::string("\0\0\0\1\0\0\0\2", 8), Code::bad_input, "other byte order");
   expect_refused("MeshVersionFormatted 2\nDimension 5\n", Code::bad_input,
                  "5 instead of 2, 3 or 4");
   expect_refused("MeshVersionFormatted 2\nDimension 3\nEnd\n", Code::bad_input, "no vertices");

@@ -6,12 +6,14 @@
 
 #include "core/base/atomic_file.h"
 #include "core/io/export_certificate.h"
+#include "core/io/vtu.h"
 #include "tests/support/box_mesh.h"
 #include "tests/support/temporary_folder.h"
 
 namespace lamella {
 namespace {
 
+/// What is written by hand, as VTK reads it.
 class Vtu : public testing::Test {
  protected:
   const test::TemporaryFolder folder;
@@ -42,7 +44,7 @@ class Vtu : public testing::Test {
   }
 };
 
-TEST_F(Vtu, ReadsBackMeshNamesAndFields) {
+TEST_F(Vtu, VtkReadsMeshNamesAndFields) {
   ASSERT_TRUE(write().ok());
   EXPECT_EQ(folder.names(), std::vector<std::string>{"m.vtu"});
   const Result<MeshContent> back = read_vtu(folder / "m.vtu");
@@ -66,6 +68,33 @@ TEST_F(Vtu, ReadsBackMeshNamesAndFields) {
   EXPECT_EQ(back->of_nodes[1].components, 3);
   ASSERT_EQ(back->of_nodes[1].values.size(), 3 * mesh.points.size());
   EXPECT_EQ(back->of_nodes[1].values[3 * 7 + 1], 2 * mesh.points[7][1]);
+}
+
+// The reader by hand gives what VTK gives, whichever of them is asked.
+TEST_F(Vtu, BothReadersAgree) {
+  ASSERT_TRUE(write().ok());
+  const Result<MeshContent> vtk = read_vtu(folder / "m.vtu");
+  const std::optional<MeshContent> own = read_appended_vtu(folder / "m.vtu");
+  ASSERT_TRUE(vtk && own);
+  EXPECT_EQ(own->mesh.points, vtk->mesh.points);
+  EXPECT_EQ(own->mesh.elements, vtk->mesh.elements);
+  EXPECT_EQ(own->mesh.element_body, vtk->mesh.element_body);
+  EXPECT_EQ(own->mesh.facets, vtk->mesh.facets);
+  EXPECT_EQ(own->mesh.facet_group, vtk->mesh.facet_group);
+  EXPECT_EQ(own->mesh.facet_face, vtk->mesh.facet_face);
+  EXPECT_EQ(own->mesh.bodies, vtk->mesh.bodies);
+  EXPECT_EQ(own->mesh.groups, vtk->mesh.groups);
+  EXPECT_EQ(own->metric, vtk->metric);
+  EXPECT_EQ(own->thickness, vtk->thickness);
+  EXPECT_EQ(own->quality, vtk->quality);
+  EXPECT_EQ(own->unit, vtk->unit);
+  ASSERT_EQ(own->of_elements.size(), 1u);
+  EXPECT_EQ(own->of_elements[0].name, vtk->of_elements[0].name);
+  EXPECT_EQ(own->of_elements[0].values, vtk->of_elements[0].values);
+  ASSERT_EQ(own->of_nodes.size(), vtk->of_nodes.size());
+  EXPECT_EQ(own->of_nodes[1].name, vtk->of_nodes[1].name);
+  EXPECT_EQ(own->of_nodes[1].components, vtk->of_nodes[1].components);
+  EXPECT_EQ(own->of_nodes[1].values, vtk->of_nodes[1].values);
 }
 
 // The order of the six components and the type of the ids are what other programs rely on.
