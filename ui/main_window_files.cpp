@@ -67,13 +67,16 @@ void MainWindow::open_files(const QStringList& files, bool add) {
 }
 
 void MainWindow::ask_open(bool add) {
-  const QStringList files =
-      QFileDialog::getOpenFileNames(this, add ? tr("Add bodies") : tr("Open"), folder_,
-                                    add ? tr("Parts (*.step *.stp *.stl *.STEP *.STP *.STL)")
-                                        : tr("Studies and parts (*.lamella *.json *.step *.stp "
-                                             "*.stl *.STEP *.STP *.STL);;Meshes (%1);;All "
-                                             "files (*)")
-                                              .arg(mesh_patterns(session_->services().formats)));
+  QStringList patterns;
+  for (const char* ending : {"step", "stp", "iges", "igs", "brep", "brp", "stl"})
+    patterns << QString("*.%1 *.%2").arg(ending, QString(ending).toUpper());
+  const QString parts = patterns.join(' ');
+  const QStringList files = QFileDialog::getOpenFileNames(
+      this, add ? tr("Add bodies") : tr("Open"), folder_,
+      add ? tr("Parts (%1)").arg(parts)
+          : tr("Studies and parts (*.lamella *.json %1);;Meshes "
+               "(%2);;All files (*)")
+                .arg(parts, mesh_patterns(session_->services().formats)));
   open_files(files, add);
 }
 

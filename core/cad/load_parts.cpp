@@ -1,10 +1,9 @@
 #include "core/cad/load_parts.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 
-#include "core/cad/step_child.h"
+#include "core/cad/cad_child.h"
 #include "core/geometry/improve_triangles.h"
 #include "core/geometry/self_intersection.h"
 #include "core/geometry/soup.h"
@@ -12,13 +11,6 @@
 
 namespace lamella {
 namespace {
-
-std::string extension_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 /// Takes the needles out where that leaves the surface sound, and tells of facets that cross.
 void improve(Part& part, const Progress& progress) {
@@ -265,11 +257,11 @@ Result<std::vector<Part>> load_stl(const std::filesystem::path& file, const Load
   return parts;
 }
 
-Result<std::vector<Part>> load_step(const std::filesystem::path& file, const LoadParams& params,
-                                    FileDiagnosis* diagnosis, std::vector<WrapReport>& wraps,
-                                    const Progress& progress) {
-  StepContent content;
-  const Result<void> done = read_step_in_child(file, params, progress.portion(0, 0.9), content);
+Result<std::vector<Part>> load_cad(const std::filesystem::path& file, const LoadParams& params,
+                                   FileDiagnosis* diagnosis, std::vector<WrapReport>& wraps,
+                                   const Progress& progress) {
+  CadContent content;
+  const Result<void> done = read_cad_in_child(file, params, progress.portion(0, 0.9), content);
   if (diagnosis) {
     diagnosis->free_shells = content.free_shells;
     diagnosis->free_faces = content.free_faces;
@@ -277,7 +269,7 @@ Result<std::vector<Part>> load_step(const std::filesystem::path& file, const Loa
   if (!done) return done.error();
   std::vector<Part> parts;
   const Progress rest = progress.portion(0.9, 1, "Closing");
-  for (StepBody& body : content.bodies) {
+  for (CadBody& body : content.bodies) {
     if (progress.cancelled()) return cancelled_error();
     if (diagnosis) {
       Diagnosis found =
@@ -325,11 +317,10 @@ Result<std::vector<Part>> load(const std::filesystem::path& file, const LoadPara
   }
   const std::string extension = extension_of(file);
   if (extension == ".stl") return load_stl(file, params, diagnosis, wraps, progress);
-  if (extension == ".step" || extension == ".stp")
-    return load_step(file, params, diagnosis, wraps, progress);
-  return Error{Code::bad_input,
-               file.filename().string() + ": '" + extension + "' is no format of parts",
-               "Lamella reads STEP (.step, .stp) and STL (.stl)."};
+  if (cad_format_of(file)) return load_cad(file, params, diagnosis, wraps, progress);
+  return Error{
+      Code::bad_input, file.filename().string() + ": '" + extension + "' is no format of parts",
+      "Lamella reads STEP (.step, .stp), IGES (.iges, .igs), BREP (.brep, .brp) and STL (.stl)."};
 }
 
 }  // namespace

@@ -29,9 +29,9 @@ struct LoadParams {
   std::optional<double> cad_memory{};    ///< MB that it may take; unset: 3/4 of the machine's
 };
 
-/// The bodies of a STEP (.step, .stp) or STL (.stl) file, one a solid, in mm. The file is not
+/// The bodies of a STEP, IGES, BREP or STL file, by its ending, one a solid, in mm. The file is not
 /// changed.
-/// Errors: io (missing, unreadable), bad_input (empty, not STEP/STL, no solid, open shell), each
+/// Errors: io (missing, unreadable), bad_input (empty, no such format, no solid, open shell), each
 /// naming the file, the finding and what to try; failed and memory (the CAD library crashed, or
 /// went beyond a limit: it runs in a process of its own); cancelled.
 Result<std::vector<Part>> load_parts(const std::filesystem::path& file,

@@ -13,21 +13,27 @@
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <GC_MakeArcOfCircle.hxx>
 #include <Geom_TrimmedCurve.hxx>
 #include <IFSelect_ReturnStatus.hxx>
+#include <IGESCAFControl_Writer.hxx>
+#include <IGESControl_Controller.hxx>
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <Standard_Failure.hxx>
+#include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Shape.hxx>
 #include <TopoDS_Wire.hxx>
@@ -41,6 +47,7 @@
 #include <gp_Circ.hxx>
 
 #include "core/base/atomic_file.h"
+#include "core/cad/cad_reader.h"
 #include "core/cad/occt_guard.h"
 
 namespace lamella {
@@ -285,7 +292,29 @@ TopoDS_Shape only_solid(const Body& body) {
   return solid;
 }
 
-Result<void> write_step(const std::vector<Body>& bodies, const std::filesystem::path& file) {
+/// IGES as most programs write it, as faces that are not sewn.
+bool write_document(const Handle(TDocStd_Document) & document, CadFormat format,
+                    const std::string& file) {
+  if (format == CadFormat::step) {
+    STEPCAFControl_Writer writer;
+    return writer.Transfer(document, STEPControl_AsIs) &&
+           writer.Write(file.c_str()) == IFSelect_RetDone;
+  }
+  if (format == CadFormat::iges) {
+    IGESControl_Controller::Init();
+    IGESCAFControl_Writer writer;
+    return writer.Transfer(document) && writer.Write(file.c_str());
+  }
+  TDF_LabelSequence labels;
+  XCAFDoc_DocumentTool::ShapeTool(document->Main())->GetFreeShapes(labels);
+  TopoDS_Compound all;
+  BRep_Builder builder;
+  builder.MakeCompound(all);
+  for (const TDF_Label& label : labels) builder.Add(all, XCAFDoc_ShapeTool::GetShape(label));
+  return BRepTools::Write(all, file.c_str());
+}
+
+Result<void> write_bodies(const std::vector<Body>& bodies, const std::filesystem::path& file) {
   STEPCAFControl_Controller::Init();
   Interface_Static::SetCVal("write.step.unit", "MM");
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
@@ -300,12 +329,11 @@ Result<void> write_step(const std::vector<Body>& bodies, const std::filesystem::
   }
   Result<AtomicFile> target = AtomicFile::create(file);
   if (!target) return target.error();
-  STEPCAFControl_Writer writer;
-  const bool written = writer.Transfer(document, STEPControl_AsIs) &&
-                       writer.Write(target->temporary().c_str()) == IFSelect_RetDone;
+  const bool written = write_document(document, cad_format_of(file).value_or(CadFormat::step),
+                                      target->temporary().string());
   XCAFApp_Application::GetApplication()->Close(document);
   if (!written) {
-    return Error{Code::io, file.string() + ": the STEP file cannot be written",
+    return Error{Code::io, file.string() + ": the CAD file cannot be written",
                  "Check that the folder is writable and has room."};
   }
   return target->commit();
@@ -323,7 +351,7 @@ Result<void> write_sample(std::string_view name, const std::filesystem::path& fi
   for (const Sample& sample : kSamples) {
     if (sample.name != name) continue;
     return guarded("sample part '" + std::string(name) + "'",
-                   [&] { return write_step(sample.make(), file); });
+                   [&] { return write_bodies(sample.make(), file); });
   }
   std::string known;
   for (const Sample& sample : kSamples) {

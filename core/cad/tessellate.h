@@ -2,8 +2,8 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/cad/cad_reader.h"
 #include "core/cad/load_parts.h"
-#include "core/cad/step_reader.h"
 
 class TopoDS_Shape;
 

@@ -15,10 +15,6 @@
         <translation>&amp;Ouvrir…</translation>
     </message>
     <message>
-        <source>Open a study, a STEP or an STL file</source>
-        <translation>Ouvrir une étude, un fichier STEP ou STL</translation>
-    </message>
-    <message>
         <source>&amp;Add body…</source>
         <translation>&amp;Ajouter un corps…</translation>
     </message>
@@ -425,6 +421,10 @@
     <message>
         <source>Save the report of the run as PDF or HTML</source>
         <translation>Enregistrer le rapport du calcul en PDF ou en HTML</translation>
+    </message>
+    <message>
+        <source>Open a study, a CAD file or an STL file</source>
+        <translation>Ouvrir une étude, un fichier CAO ou STL</translation>
     </message>
 </context>
 <context>
@@ -1894,14 +1894,6 @@ rendu uniforme sur les éléments</translation>
         <translation>Ajouter des corps</translation>
     </message>
     <message>
-        <source>Parts (*.step *.stp *.stl *.STEP *.STP *.STL)</source>
-        <translation>Pièces (*.step *.stp *.stl *.STEP *.STP *.STL)</translation>
-    </message>
-    <message>
-        <source>Studies and parts (*.lamella *.json *.step *.stp *.stl *.STEP *.STP *.STL);;Meshes (%1);;All files (*)</source>
-        <translation>Études et pièces (*.lamella *.json *.step *.stp *.stl *.STEP *.STP *.STL);;Maillages (%1);;Tous les fichiers (*)</translation>
-    </message>
-    <message>
         <source>Save study</source>
         <translation>Enregistrer l&apos;étude</translation>
     </message>
@@ -2044,6 +2036,14 @@ rendu uniforme sur les éléments</translation>
     <message>
         <source>Start</source>
         <translation>Démarrage</translation>
+    </message>
+    <message>
+        <source>Parts (%1)</source>
+        <translation>Pièces (%1)</translation>
+    </message>
+    <message>
+        <source>Studies and parts (*.lamella *.json %1);;Meshes (%2);;All files (*)</source>
+        <translation>Études et pièces (*.lamella *.json %1);;Maillages (%2);;Tous les fichiers (*)</translation>
     </message>
 </context>
 <context>
@@ -3313,10 +3313,6 @@ Les propriétés du maillage ont ses réglages.</translation>
 <context>
     <name>lamella::ui::Welcome</name>
     <message>
-        <source>Drop a STEP or STL file here</source>
-        <translation>Déposez ici un fichier STEP ou STL</translation>
-    </message>
-    <message>
         <source>Lamella fills it with tetrahedra, n layers through every wall.</source>
         <translation>Lamella le remplit de tétraèdres, n couches à travers chaque paroi.</translation>
     </message>
@@ -3371,6 +3367,10 @@ Les propriétés du maillage ont ses réglages.</translation>
     <message>
         <source>opened last</source>
         <translation>ouverts récemment</translation>
+    </message>
+    <message>
+        <source>Drop a CAD or STL file here</source>
+        <translation>Déposez ici un fichier CAO ou STL</translation>
     </message>
 </context>
 <context>

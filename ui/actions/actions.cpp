@@ -26,7 +26,7 @@ Actions::Actions(QObject* parent) : QObject(parent) {
   // Here, so that lupdate knows whose texts these are.
   static constexpr Row table[] = {
       {Act::open, QT_TR_NOOP("&Open…"), "open", "Ctrl+O",
-       QT_TR_NOOP("Open a study, a STEP or an STL file")},
+       QT_TR_NOOP("Open a study, a CAD file or an STL file")},
       {Act::add, QT_TR_NOOP("&Add body…"), "add", "Ctrl+Shift+O",
        QT_TR_NOOP("Add the bodies of another file")},
       {Act::save, QT_TR_NOOP("&Save study"), "save", "Ctrl+S",

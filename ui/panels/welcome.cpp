@@ -30,7 +30,7 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   picture->setPixmap(QIcon(":/icons/drop.svg").pixmap(72, 72));
   picture->setAlignment(Qt::AlignCenter);
   zone->addWidget(picture);
-  auto* title = new QLabel(tr("Drop a STEP or STL file here"));
+  auto* title = new QLabel(tr("Drop a CAD or STL file here"));
   QFont large = title->font();
   large.setPointSizeF(large.pointSizeF() + 6);
   large.setWeight(QFont::DemiBold);

@@ -69,5 +69,43 @@ TEST(SampleParts, UnknownNamesAndFoldersAreRefused) {
   EXPECT_TRUE(folder.names().empty());
 }
 
+/// An IGES file has faces that are not sewn, a BREP file no names: the same volume all the same.
+TEST(SampleParts, ComeBackFromEveryCadFormat) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_sample("ribbed_tray", folder / "t.step").ok());
+  const auto step = load_parts(folder / "t.step");
+  ASSERT_TRUE(step.ok()) << step.error().message;
+  for (const char* name : {"t.igs", "t.IGES", "t.brep", "t.brp"}) {
+    ASSERT_TRUE(write_sample("ribbed_tray", folder / name).ok()) << name;
+    const auto parts = load_parts(folder / name);
+    ASSERT_TRUE(parts.ok()) << parts.error().message;
+    ASSERT_EQ(parts->size(), 1u) << name;
+    EXPECT_NEAR((*parts)[0].cad_volume, (*step)[0].cad_volume, 1e-6 * (*step)[0].cad_volume)
+        << name;
+    EXPECT_TRUE(check_closed((*parts)[0].surface).ok()) << name;
+  }
+}
+
+TEST(SampleParts, SolidsOfABrepFileStayApart) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_sample("twisted_tube", folder / "t.brep").ok());
+  const auto parts = load_parts(folder / "t.brep");
+  ASSERT_TRUE(parts.ok()) << parts.error().message;
+  ASSERT_EQ(parts->size(), 2u);
+  EXPECT_NE((*parts)[0].name, (*parts)[1].name);
+}
+
+TEST(SampleParts, WhatIsNoCadFileIsRefusedByItsName) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"x.igs", "x.brep"})
+    for (const char* text : {"", "no CAD", "DBRep_DrawableShape\n\nCASCADE Topology V1"}) {
+      std::ofstream(folder / name) << text;
+      const auto parts = load_parts(folder / name);
+      ASSERT_FALSE(parts.ok()) << name;
+      EXPECT_NE(parts.error().message.find(name), std::string::npos) << parts.error().message;
+      EXPECT_FALSE(parts.error().hint.empty());
+    }
+}
+
 }  // namespace
 }  // namespace lamella

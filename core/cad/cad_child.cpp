@@ -1,4 +1,4 @@
-#include "core/cad/step_child.h"
+#include "core/cad/cad_child.h"
 
 #include <unistd.h>
 
@@ -36,7 +36,7 @@ void members(Io& io, P& part) requires std::is_same_v<std::remove_const_t<P>, Pa
 }
 
 template <class Io, class C>
-void members(Io& io, C& content) requires std::is_same_v<std::remove_const_t<C>, StepContent> {
+void members(Io& io, C& content) requires std::is_same_v<std::remove_const_t<C>, CadContent> {
   io.value(content.free_shells);
   io.value(content.free_faces);
   io.list(content.bodies, [&](auto& body) {
@@ -64,7 +64,7 @@ bool within(const std::vector<T>& indices, std::size_t count) {
 }
 
 /// A reader that goes wrong without a crash must not send its caller astray.
-bool sound(const StepBody& body) {
+bool sound(const CadBody& body) {
   const ReferenceSurface<3>& s = body.part.surface;
   const std::size_t points = s.points.size();
   return within(s.facets, points) && within(s.feature_edges, points) && within(s.corners, points) &&
@@ -82,7 +82,7 @@ std::uint64_t default_memory() {
 
 }  // namespace
 
-std::string to_bytes(const StepContent& content, const Result<void>& outcome) {
+std::string to_bytes(const CadContent& content, const Result<void>& outcome) {
   return bytes_of([&](ByteWriter& out) {
     const std::optional<Error> error = outcome ? std::nullopt : std::optional(outcome.error());
     out.maybe(error, [&](const Error& e) { members(out, e); });
@@ -90,7 +90,7 @@ std::string to_bytes(const StepContent& content, const Result<void>& outcome) {
   });
 }
 
-bool from_bytes(const std::string& bytes, StepContent& content, Result<void>& outcome) {
+bool from_bytes(const std::string& bytes, CadContent& content, Result<void>& outcome) {
   ByteReader in(bytes);
   std::optional<Error> error;
   in.maybe(error, [&](Error& e) { members(in, e); });
@@ -99,12 +99,11 @@ bool from_bytes(const std::string& bytes, StepContent& content, Result<void>& ou
   return in.done() && std::all_of(content.bodies.begin(), content.bodies.end(), sound);
 }
 
-Result<void> read_step_in_child(const std::filesystem::path& file, const LoadParams& params,
-                                const Progress& progress, StepContent& content,
-                                const StepWork& work) {
+Result<void> read_cad_in_child(const std::filesystem::path& file, const LoadParams& params,
+                               const Progress& progress, CadContent& content, const CadWork& work) {
   const std::string name = file.filename().string();
   const ChildWork in_child = [&](const Progress& through) {
-    StepContent found;
+    CadContent found;
     const Result<void> outcome =
         guarded_alone(name, [&] { return work(file, params, through, found); });
     return to_bytes(found, outcome);

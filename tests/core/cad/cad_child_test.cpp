@@ -1,4 +1,4 @@
-#include "core/cad/step_child.h"
+#include "core/cad/cad_child.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -29,12 +29,12 @@ void expect_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
                           a.size() * sizeof(T)) == 0);
 }
 
-void expect_same(const StepContent& a, const StepContent& b) {
+void expect_same(const CadContent& a, const CadContent& b) {
   EXPECT_EQ(a.free_shells, b.free_shells);
   EXPECT_EQ(a.free_faces, b.free_faces);
   ASSERT_EQ(a.bodies.size(), b.bodies.size());
   for (std::size_t k = 0; k < a.bodies.size(); ++k) {
-    const StepBody &x = a.bodies[k], &y = b.bodies[k];
+    const CadBody &x = a.bodies[k], &y = b.bodies[k];
     EXPECT_EQ(x.part.name, y.part.name);
     EXPECT_EQ(x.part.color, y.part.color);
     EXPECT_EQ(x.part.cad_volume, y.part.cad_volume);
@@ -70,30 +70,30 @@ std::filesystem::path sample(const test::TemporaryFolder& folder, const std::str
 }
 
 void expect_read_alike(const std::filesystem::path& file) {
-  StepContent direct, apart;
-  const Result<void> one = guarded("file", [&] { return read_step(file, {}, {}, direct); });
-  const Result<void> two = read_step_in_child(file, {}, {}, apart);
+  CadContent direct, apart;
+  const Result<void> one = guarded("file", [&] { return read_cad(file, {}, {}, direct); });
+  const Result<void> two = read_cad_in_child(file, {}, {}, apart);
   ASSERT_TRUE(one.ok() && two.ok()) << (one ? two : one).error().message;
   EXPECT_GT(direct.bodies.size(), 0u);
   expect_same(direct, apart);
 }
 
-TEST(StepChild, ReadsWhatIsReadDirectlyBitByBit) {
+TEST(CadChild, ReadsWhatIsReadDirectlyBitByBit) {
   const test::TemporaryFolder folder;
   for (const std::string& name : sample_names()) expect_read_alike(sample(folder, name));
 }
 
-TEST(StepChild, ReadsRealPartsAlike) {
+TEST(CadChild, ReadsRealPartsAlike) {
   for (const char* name : {"prusa_mini_fsensor_cover.stp", "jst_xh_s4b_header.step"}) {
     if (!std::filesystem::exists(kReal / name)) GTEST_SKIP() << "missing " << kReal / name;
     expect_read_alike(kReal / name);
   }
 }
 
-TEST(StepChild, HandsBackRefusalsAndErrors) {
-  StepContent content, back;
+TEST(CadChild, HandsBackRefusalsAndErrors) {
+  CadContent content, back;
   content.free_faces = 3;
-  StepBody& body = content.bodies.emplace_back();
+  CadBody& body = content.bodies.emplace_back();
   body.part.name = "lid";
   body.part.notes = {"", "a note"};
   body.refusal = Error{Code::bad_input, "open", "close it"};
@@ -110,16 +110,16 @@ TEST(StepChild, HandsBackRefusalsAndErrors) {
   EXPECT_EQ(outcome.error().hint, "a hint");
 
   for (std::size_t n = 0; n < bytes.size(); ++n) {
-    StepContent cut;
+    CadContent cut;
     EXPECT_FALSE(from_bytes(bytes.substr(0, n), cut, outcome)) << n;
   }
   body.rough.facets[0][1] = 3;  // no such point
   EXPECT_FALSE(from_bytes(to_bytes(content, {}), back, outcome));
 }
 
-Error error_of(const StepWork& work, const LoadParams& params = {}, const Progress& progress = {}) {
-  StepContent content;
-  const Result<void> result = read_step_in_child("part.step", params, progress, content, work);
+Error error_of(const CadWork& work, const LoadParams& params = {}, const Progress& progress = {}) {
+  CadContent content;
+  const Result<void> result = read_cad_in_child("part.step", params, progress, content, work);
   EXPECT_FALSE(result.ok());
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
   EXPECT_EQ(errno, ECHILD);
@@ -131,7 +131,7 @@ Error error_of(const StepWork& work, const LoadParams& params = {}, const Progre
   return result.error();
 }
 
-TEST(StepChild, SurvivesACrash) {
+TEST(CadChild, SurvivesACrash) {
   const Error error = error_of([](const auto&, const auto&, const auto&, auto&) -> Result<void> {
     ::signal(SIGSEGV, SIG_DFL);
     ::raise(SIGSEGV);
@@ -141,7 +141,7 @@ TEST(StepChild, SurvivesACrash) {
   EXPECT_NE(error.message.find("it crashed"), std::string::npos) << error.message;
 }
 
-TEST(StepChild, EndsAHang) {
+TEST(CadChild, EndsAHang) {
   const Error error = error_of(
       [](const auto&, const auto&, const auto&, auto&) -> Result<void> {
         for (;;) ::pause();
@@ -151,18 +151,18 @@ TEST(StepChild, EndsAHang) {
   EXPECT_NE(error.message.find("no end within 0.2 s"), std::string::npos) << error.message;
 }
 
-TEST(StepChild, BoundsMemory) {
-  const StepWork hungry = [](const auto&, const auto&, const auto&, auto& content) -> Result<void> {
+TEST(CadChild, BoundsMemory) {
+  const CadWork hungry = [](const auto&, const auto&, const auto&, auto& content) -> Result<void> {
     content.bodies.emplace_back().rough.points.assign(4'000'000, Vec<3>::Ones());  // 96 MB
     content.bodies.clear();
     return {};
   };
   EXPECT_EQ(error_of(hungry, {.cad_memory = 50}).code, Code::memory);
-  StepContent content;
-  EXPECT_TRUE(read_step_in_child("part.step", {.cad_memory = 300}, {}, content, hungry).ok());
+  CadContent content;
+  EXPECT_TRUE(read_cad_in_child("part.step", {.cad_memory = 300}, {}, content, hungry).ok());
 }
 
-TEST(StepChild, CancelEndsIt) {
+TEST(CadChild, CancelEndsIt) {
   std::stop_source stop;
   std::atomic<double> told = 0;
   // The child's report reaches the caller, who then cancels.
@@ -184,7 +184,7 @@ TEST(StepChild, CancelEndsIt) {
 }
 
 // Threads of a pool do not come along into a copy of the process.
-TEST(StepChild, WorksBesideBusyThreads) {
+TEST(CadChild, WorksBesideBusyThreads) {
   const test::TemporaryFolder folder;
   const auto file = sample(folder, sample_names().front());
   std::atomic<bool> end = false;
@@ -192,8 +192,8 @@ TEST(StepChild, WorksBesideBusyThreads) {
     while (!end) parallel_each(10'000, 0, {}, [](std::size_t) { ::getpid(); });
   });
   for (int k = 0; k < 10; ++k) {
-    StepContent content;
-    const Result<void> result = read_step_in_child(file, {.cad_seconds = 60}, {}, content);
+    CadContent content;
+    const Result<void> result = read_cad_in_child(file, {.cad_seconds = 60}, {}, content);
     EXPECT_TRUE(result.ok()) << result.error().message;
   }
   end = true;

@@ -1,13 +1,16 @@
-#include "core/cad/step_reader.h"
+#include "core/cad/cad_reader.h"
 
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_MakeSolid.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepLib.hxx>
+#include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESControl_Controller.hxx>
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Controller.hxx>
@@ -26,6 +29,8 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <XCAFPrs.hxx>
 #include <XCAFPrs_DocumentExplorer.hxx>
+#include <algorithm>
+#include <cctype>
 #include <map>
 #include <set>
 
@@ -73,10 +78,9 @@ class Document {
 
 /// STEP is a text between two fixed words: a missing end is a cut file.
 Result<void> check_envelope(const std::filesystem::path& file, const std::string& text) {
-  if (text.empty()) return bad(file, "the file is empty", "Copy or export it again.");
   if (text.substr(0, 4096).find("ISO-10303-21") == std::string::npos) {
     return bad(file, "not a STEP file (it does not begin with ISO-10303-21)",
-               "Lamella reads STEP (AP203, AP214, AP242) and STL; check the file.");
+               "Lamella reads AP203, AP214 and AP242; check the file.");
   }
   const std::size_t tail = text.size() > 4096 ? text.size() - 4096 : 64;
   if (text.find("END-ISO-10303-21", tail) == std::string::npos) {
@@ -189,10 +193,10 @@ Error no_solid(const std::filesystem::path& file, const std::string& text, const
 }
 
 /// Bodies without exact geometry come as the triangles that the file holds.
-void add_tessellated(const std::string& text, const std::string& fallback, StepContent& content) {
+void add_tessellated(const std::string& text, const std::string& fallback, CadContent& content) {
   std::vector<TessellatedBody> bodies = tessellated_bodies(text);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
-    StepBody& body = content.bodies.emplace_back();
+    CadBody& body = content.bodies.emplace_back();
     body.part.name = bodies[k].name.empty() ? fallback : bodies[k].name;
     if (bodies.size() > 1) body.part.name += " " + std::to_string(k + 1);
     body.part.notes.push_back("No exact geometry: its " + counted(bodies[k].soup.size(), "facet") +
@@ -258,8 +262,8 @@ TopoDS_Shape healed(const TopoDS_Shape& solid) {
   return only;
 }
 
-Result<StepBody> body_of(Found found, const LoadParams& params, const Progress& progress) {
-  StepBody body;
+Result<CadBody> body_of(Found found, const LoadParams& params, const Progress& progress) {
+  CadBody body;
   body.exact_shape_valid = BRepCheck_Analyzer(found.solid).IsValid();
   const SolidInfo info = found.info;
   Result<Part> part =
@@ -287,17 +291,10 @@ Result<StepBody> body_of(Found found, const LoadParams& params, const Progress& 
   return body;
 }
 
-}  // namespace
-
-Result<void> read_step(const std::filesystem::path& file, const LoadParams& params,
-                       const Progress& progress, StepContent& content) {
-  Result<std::string> text = read_file(file);
-  if (!text) return text.error();
-  if (Result<void> envelope = check_envelope(file, *text); !envelope) return envelope.error();
-  if (progress.cancelled()) return cancelled_error();
-
+/// The shapes of a file with names and colors; false where there is nothing that can be taken over.
+Result<bool> fill_from_step(const std::filesystem::path& file, Document& document,
+                            const Progress& progress) {
   STEPCAFControl_Controller::Init();
-  const Setting unit("xstep.cascade.unit", "MM");
   STEPCAFControl_Reader reader;
   reader.SetNameMode(Standard_True);
   reader.SetColorMode(Standard_True);
@@ -306,13 +303,74 @@ Result<void> read_step(const std::filesystem::path& file, const LoadParams& para
   reader.SetGDTMode(Standard_False);
   reader.SetMatMode(Standard_False);
   reader.SetViewMode(Standard_False);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone)
     return bad(file, "the STEP text cannot be read", "The file is damaged; export it again.");
-  }
   if (progress.cancelled()) return cancelled_error();
+  Handle(OcctProgress) bridge = new OcctProgress(progress);
+  return reader.Transfer(document.get(), bridge->Start());
+}
+
+Result<bool> fill_from_iges(const std::filesystem::path& file, Document& document,
+                            const Progress& progress) {
+  IGESControl_Controller::Init();
+  IGESCAFControl_Reader reader;
+  reader.SetNameMode(Standard_True);
+  reader.SetColorMode(Standard_True);
+  reader.SetLayerMode(Standard_False);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone || reader.NbRootsForTransfer() == 0)
+    return bad(file, "not an IGES file, or a damaged one", "Export the part again, best as STEP.");
+  if (progress.cancelled()) return cancelled_error();
+  Handle(OcctProgress) bridge = new OcctProgress(progress);
+  return reader.Transfer(document.get(), bridge->Start());
+}
+
+Result<bool> fill_from_brep(const std::filesystem::path& file, Document& document,
+                            const Progress& progress) {
+  TopoDS_Shape shape;
+  Handle(OcctProgress) bridge = new OcctProgress(progress);
+  if (!BRepTools::Read(shape, file.c_str(), BRep_Builder(), bridge->Start()) || shape.IsNull()) {
+    if (progress.cancelled()) return cancelled_error();
+    return bad(file, "not a BREP file of OpenCASCADE, or a damaged one", "Write the part again.");
+  }
+  XCAFDoc_DocumentTool::ShapeTool(document.get()->Main())->AddShape(shape, Standard_False);
+  return true;
+}
+
+}  // namespace
+
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+std::optional<CadFormat> cad_format_of(const std::filesystem::path& file) {
+  const std::string ending = extension_of(file);
+  if (ending == ".step" || ending == ".stp") return CadFormat::step;
+  if (ending == ".iges" || ending == ".igs") return CadFormat::iges;
+  if (ending == ".brep" || ending == ".brp") return CadFormat::brep;
+  return std::nullopt;
+}
+
+Result<void> read_cad(const std::filesystem::path& file, const LoadParams& params,
+                      const Progress& progress, CadContent& content) {
+  Result<std::string> text = read_file(file);
+  if (!text) return text.error();
+  if (text->empty()) return bad(file, "the file is empty", "Copy or export it again.");
+  const CadFormat format = cad_format_of(file).value_or(CadFormat::step);
+  if (format == CadFormat::step)
+    if (Result<void> envelope = check_envelope(file, *text); !envelope) return envelope.error();
+  if (progress.cancelled()) return cancelled_error();
+
+  const Setting unit("xstep.cascade.unit", "MM");
   Document document;
-  Handle(OcctProgress) bridge = new OcctProgress(progress.portion(0.05, 0.4, "Reading STEP"));
-  const bool transferred = reader.Transfer(document.get(), bridge->Start());
+  const Progress reading = progress.portion(0.05, 0.4, "Reading the CAD file");
+  const Result<bool> filled = format == CadFormat::step   ? fill_from_step(file, document, reading)
+                              : format == CadFormat::iges ? fill_from_iges(file, document, reading)
+                                                          : fill_from_brep(file, document, reading);
+  if (!filled) return filled.error();
+  const bool transferred = *filled;
   if (progress.cancelled()) return cancelled_error();
 
   std::vector<Found> found;
@@ -329,7 +387,7 @@ Result<void> read_step(const std::filesystem::path& file, const LoadParams& para
   if (found.empty() && params.repair != Repair::none)
     found = sew(loose.all, file.stem().string(), progress);
   if (progress.cancelled()) return cancelled_error();
-  if (found.empty() && loose.all.empty()) {
+  if (found.empty() && loose.all.empty() && format == CadFormat::step) {
     add_tessellated(*text, file.stem().string(), content);
     if (!content.bodies.empty()) return {};
   }
@@ -345,7 +403,7 @@ Result<void> read_step(const std::filesystem::path& file, const LoadParams& para
       return 0.4 + 0.6 * static_cast<double>(i) / static_cast<double>(found.size());
     };
     if (progress.cancelled()) return cancelled_error();
-    Result<StepBody> body =
+    Result<CadBody> body =
         body_of(std::move(found[k]), params, progress.portion(at(k), at(k + 1), "Tessellating"));
     if (!body) return body.error();
     content.bodies.push_back(*std::move(body));
