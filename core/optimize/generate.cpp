@@ -235,12 +235,12 @@ SimplexMesh<D> to_mesh(const FoldedMesh<D>& t, const ReferenceSurface<D>& surfac
 /// the middle of the body, the others from nodes of the surface as in the thesis.
 template <int D>
 Result<SimplexMesh<D>> portfolio(const ReferenceSurface<D>& surface, std::uint64_t seed,
-                                 int attempts, Clock::time_point deadline,
-                                 const Progress& progress) {
+                                 int attempts, Clock::duration time, const Progress& progress) {
   const Bridged<D> boundary = bridge_shells<D>(surface);
   Random random(seed);
   std::optional<Locator<3>> locator;
   if constexpr (D == 3) locator.emplace(surface);
+  const auto deadline = Clock::now() + time;
   double least = std::numeric_limits<double>::infinity();
   Error stalled{Code::failed, "Algorithm 2.1 was given no time.", "Raise its time limit."};
   for (int attempt = 0; attempt < attempts; ++attempt) {
@@ -306,15 +306,14 @@ Result<SimplexMesh<D>> generate(const ReferenceSurface<D>& surface, const Genera
           Clock::now() + clock_time(params.time_limit * (0.5 + kShareOfVoid * shells));
       const FillSurface fill = [&](const ReferenceSurface<3>& part, int attempts,
                                    const Progress& inner) {
-        return portfolio<3>(part, params.seed, attempts, until, inner);
+        return portfolio<3>(part, params.seed, attempts, until - Clock::now(), inner);
       };
       Result<SimplexMesh<3>> mesh = generate_around_voids(surface, fill, progress.portion(0, 0.5));
       if (!mesh && mesh.error().code == Code::cancelled) return mesh;
       if (mesh && certify<3>(*mesh, surface).ok()) return mesh;
     }
   }
-  return portfolio<D>(surface, params.seed, kAttempts, Clock::now() + clock_time(params.time_limit),
-                      progress);
+  return portfolio<D>(surface, params.seed, kAttempts, clock_time(params.time_limit), progress);
 }
 
 namespace {
