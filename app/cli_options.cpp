@@ -433,7 +433,8 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   m->footer(
       "Ctrl-C writes the best mesh so far and ends with status 130. Sizes of --size-* are never "
       "coarser than the natural metric; a study can ask for more.");
-  m->add_option("PART", mesh.inputs, "STEP, IGES, BREP or STL files, or one study (.lamella or .json)")
+  m->add_option("PART", mesh.inputs,
+                "STEP, IGES, BREP or STL files, or one study (.lamella or .json)")
       ->option_text("...")
       ->required();
   m->add_option("-o,--output", mesh.outputs,
@@ -521,7 +522,9 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
 
   GenerateCommand generate;
   CLI::App* g = app.add_subcommand("generate", "Fill a closed surface with tetrahedra");
-  g->add_option("SURFACE", generate.surface, "STEP, IGES, BREP or STL file")->option_text(" ")->required();
+  g->add_option("SURFACE", generate.surface, "STEP, IGES, BREP or STL file")
+      ->option_text(" ")
+      ->required();
   g->add_option("-o,--output", generate.output, "File to write, as for mesh")
       ->option_text("FILE")
       ->required();

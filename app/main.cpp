@@ -228,7 +228,8 @@ int main(int argc, char** argv) {
   parser.addHelpOption();
   parser.addVersionOption();
   parser.addPositionalArgument(
-      "files", "a study (.lamella), STEP, IGES, BREP or STL parts, or one mesh (.msh, .vtu, .mesh, ..)",
+      "files",
+      "a study (.lamella), STEP, IGES, BREP or STL parts, or one mesh (.msh, .vtu, .mesh, ..)",
       "[FILE...]");
   parser.addOption({"report-pdf",
                     "write the report of FILE, a .report.html or a .lamella, as PDF, and leave",
