@@ -69,11 +69,11 @@ void add_repair(CLI::App* app, std::string& repair, std::optional<double>& spaci
 }
 
 void add_cad(CLI::App* app, CadOptions& cad) {
-  app->add_option("--cad-timeout", cad.seconds, "Time that reading a STEP file may take, s [600]")
+  app->add_option("--cad-timeout", cad.seconds, "Time that reading a CAD file may take, s [600]")
       ->option_text("S")
       ->check(CLI::PositiveNumber);
   app->add_option("--cad-memory", cad.memory,
-                  "Memory that reading a STEP file may take, MB [3/4 of the machine's]")
+                  "Memory that reading a CAD file may take, MB [3/4 of the machine's]")
       ->option_text("MB")
       ->check(CLI::PositiveNumber);
 }
@@ -586,7 +586,7 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   CLI::App* s = app.add_subcommand(
       "sample", "Write a part made by code, and a study of it: " + joined(sample_names()));
   s->add_option("NAME", sample.name, "Its name")->option_text(" ")->required();
-  s->add_option("-o,--output", sample.output, "STEP file to write [NAME.step]")
+  s->add_option("-o,--output", sample.output, "STEP, IGES or BREP file to write [NAME.step]")
       ->option_text("FILE");
 
   CaseCommand made;

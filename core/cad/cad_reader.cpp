@@ -292,36 +292,39 @@ Result<CadBody> body_of(Found found, const LoadParams& params, const Progress& p
 }
 
 /// The shapes of a file with names and colors; false where there is nothing that can be taken over.
+template <class Reader>
+Result<bool> fill_by(Reader& reader, const std::filesystem::path& file, Document& document,
+                     const Error& unreadable, const Progress& progress) {
+  reader.SetNameMode(Standard_True);
+  reader.SetColorMode(Standard_True);
+  reader.SetLayerMode(Standard_False);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return unreadable;
+  if (progress.cancelled()) return cancelled_error();
+  Handle(OcctProgress) bridge = new OcctProgress(progress);
+  return reader.Transfer(document.get(), bridge->Start());
+}
+
 Result<bool> fill_from_step(const std::filesystem::path& file, Document& document,
                             const Progress& progress) {
   STEPCAFControl_Controller::Init();
   STEPCAFControl_Reader reader;
-  reader.SetNameMode(Standard_True);
-  reader.SetColorMode(Standard_True);
-  reader.SetLayerMode(Standard_False);
   reader.SetPropsMode(Standard_False);
   reader.SetGDTMode(Standard_False);
   reader.SetMatMode(Standard_False);
   reader.SetViewMode(Standard_False);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone)
-    return bad(file, "the STEP text cannot be read", "The file is damaged; export it again.");
-  if (progress.cancelled()) return cancelled_error();
-  Handle(OcctProgress) bridge = new OcctProgress(progress);
-  return reader.Transfer(document.get(), bridge->Start());
+  return fill_by(reader, file, document,
+                 bad(file, "the STEP text cannot be read", "The file is damaged; export it again."),
+                 progress);
 }
 
 Result<bool> fill_from_iges(const std::filesystem::path& file, Document& document,
                             const Progress& progress) {
   IGESControl_Controller::Init();
   IGESCAFControl_Reader reader;
-  reader.SetNameMode(Standard_True);
-  reader.SetColorMode(Standard_True);
-  reader.SetLayerMode(Standard_False);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone || reader.NbRootsForTransfer() == 0)
-    return bad(file, "not an IGES file, or a damaged one", "Export the part again, best as STEP.");
-  if (progress.cancelled()) return cancelled_error();
-  Handle(OcctProgress) bridge = new OcctProgress(progress);
-  return reader.Transfer(document.get(), bridge->Start());
+  return fill_by(
+      reader, file, document,
+      bad(file, "not an IGES file, or a damaged one", "Export the part again, best as STEP."),
+      progress);
 }
 
 Result<bool> fill_from_brep(const std::filesystem::path& file, Document& document,
