@@ -339,9 +339,11 @@ int adapt_mesh(const SimplexMesh<D>& mesh, MetricField<D>&& given, const AdaptCo
     const Progress round = progress.portion((i - 1.0) / c.iterations, 1.0 * i / c.iterations,
                                             "adaption " + std::to_string(i));
     Result<void> ready = asked.prepare(current, i, round.portion(0, 0.05));
-    Result<Adapted<D>> next = ready ? adapt<D>(current.mesh, current.metric, first.surface(),
-                                               *params, round.portion(0.05, 0.9), asked.function())
-                                    : Result<Adapted<D>>(ready.error());
+    const MetricFunction<D> at = asked.function();
+    Result<Adapted<D>> next = ready
+                                  ? adapt<D>(current.mesh, at ? MetricField<D>{} : current.metric,
+                                             first.surface(), *params, round.portion(0.05, 0.9), at)
+                                  : Result<Adapted<D>>(ready.error());
     if (!next) {
       if (next.error().code != Code::cancelled || adapted == 0) return console.fail(next.error());
       cancelled = true;

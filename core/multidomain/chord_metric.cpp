@@ -95,29 +95,6 @@ Metric<3> Curved::at(const Metric<3>& metric, double distance, double growth) co
   return asks ? intersect<3>(metric, chords) : metric;
 }
 
-Metric<3> with_chords(const Metric<3>& metric, const Partition<3>& partition, const Vec<3>& x,
-                      double tolerance, double growth) {
-  // Where the size along the border is h already, what lies farther than this asks for more.
-  const double largest = 1 / std::sqrt(spectrum<3>(metric).values[0]);
-  const double reach = largest / growth;
-  const Zone<3>* zone = nullptr;
-  ZoneDistance<3> near{reach};
-  for (int k = 0; k < partition.background(); ++k) {
-    const Box<3>& box = partition.box(k);
-    if ((x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm() >= std::abs(near.distance)) continue;
-    const ZoneDistance<3> d = partition.zone(k).at(x);
-    if (std::abs(d.distance) < std::abs(near.distance)) {
-      near = d;
-      zone = &partition.zone(k);
-    }
-    if (d.distance < 0) break;  // the others are hidden
-  }
-  if (!zone || !(near.normal.squaredNorm() > 0)) return metric;
-  const std::optional<Curved> curved =
-      chords_of(*zone, x - near.distance * near.normal, near.normal, largest, tolerance);
-  return curved ? curved->at(metric, std::abs(near.distance), growth) : metric;
-}
-
 void ChordField::Level::add(const std::array<Vec<3>, 3>& facet, const Curved& asked) {
   const auto first = static_cast<std::int32_t>(surface.points.size());
   surface.points.insert(surface.points.end(), facet.begin(), facet.end());
@@ -218,10 +195,12 @@ ChordField::ChordField(const Partition<3>& partition,
       const Vec<3>&a = s.points[s.facets[f][0]], &b = s.points[s.facets[f][1]],
             &c = s.points[s.facets[f][2]];
       const Vec<3> center = (a + b + c) / 3, normal = (b - a).cross(c - a);
-      if (!(normal.squaredNorm() > 0) || partition.border(center).distance > 0.1 * tolerance)
+      const Zone<3>& zone = partition.zone(static_cast<int>(z));
+      // Facets of a zone by formula are chords of it.
+      if (!(normal.squaredNorm() > 0) ||
+          partition.border(center).distance > 0.1 * tolerance + std::abs(zone.distance(center)))
         return;  // hidden
-      found[f] = chords_of(partition.zone(static_cast<int>(z)), center, normal.normalized(),
-                           flat_share * largest, tolerance);
+      found[f] = chords_of(zone, center, normal.normalized(), flat_share * largest, tolerance);
     });
     for (std::size_t f = 0; f < found.size(); ++f) {
       if (!found[f] || !(found[f]->size[0] < flat_share * largest)) continue;

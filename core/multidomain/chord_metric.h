@@ -12,18 +12,14 @@
 
 namespace lamella {
 
-/// The metric with sizes along the nearest border small enough there for edges to be chords of it
-/// within `tolerance` mm; away from the border they grow by the share `growth` of the distance. The
-/// size across is small enough for them to grow to no more than 2.5 times within it. Sharp edges of
-/// the border do not count. Thread-safe.
-Metric<3> with_chords(const Metric<3>& metric, const Partition<3>& partition, const Vec<3>& x,
-                      double tolerance, double growth = 0.5);
-
-/// The same for all that is curved in the surfaces of the zones, wherever the nearest border is: a
-/// fillet makes sizes small around it too. And for details, whose edges the mesh has to follow:
-/// along a feature edge from corner to corner sizes are at most its length, and between edges that
-/// have no corner in common at most their distance. Immutable and thread-safe. Of one that was
-/// cancelled while it was made parts are missing.
+/// A metric with sizes along all that is curved in the surfaces of the zones small enough for edges
+/// to be chords of it within `tolerance` mm, wherever the nearest border is: a fillet makes sizes
+/// small around it too. Away from the border they grow by the share `growth` of the distance; the
+/// size across is small enough for them to grow to no more than 2.5 times within it. Sharp edges do
+/// not count as curved, but details do, whose edges the mesh has to follow: along a feature edge
+/// from corner to corner sizes are at most its length, and between edges that have no corner in
+/// common at most their distance. Zones without a surface ask for nothing. Immutable and
+/// thread-safe. Of one that was cancelled while it was made parts are missing.
 class ChordField {
  public:
   ChordField(const Partition<3>& partition, const std::vector<ReferenceSurface<3>>& surfaces,

@@ -22,7 +22,9 @@ constexpr double curve_share = 0.1;
 constexpr double face_turn = 0.4;
 /// Growth of the metric's determinant that calls for a finer mesh before it is cut.
 constexpr double finer_share = 1.5;
-/// Of the distance from what is curved: how sizes along it grow.
+/// Of the tolerance: what chords are asked for. Of the distance from what is curved: how sizes
+/// along it grow.
+constexpr double chord_share = 0.6;
 constexpr double chord_growth = 0.7;
 
 std::int32_t face_count(const std::vector<std::int32_t>& facet_face) {
@@ -259,21 +261,18 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   cut_params.threads = adapt_params.threads;
   const double tolerance = cut_params.tolerance;
   const auto field =
-      std::make_shared<const ChordField>(partition, surfaces, tolerance, chord_growth,
+      std::make_shared<const ChordField>(partition, surfaces, chord_share * tolerance, chord_growth,
                                          adapt_params.threads, progress.portion(0, 0.02));
   if (progress.cancelled()) return cancelled_error();
-  const auto add_chords = [&](const Metric<3>& m, const Vec<3>& x) {
-    return field->at(with_chords(m, partition, x, tolerance), x);
-  };
   MetricFunction<3> chords_at;
-  if (metric_at) chords_at = [&](const Vec<3>& x) { return add_chords(metric_at(x), x); };
+  if (metric_at) chords_at = [&](const Vec<3>& x) { return field->at(metric_at(x), x); };
   MetricField<3> chords(mesh.points.size(), Metric<3>::Identity());
   std::vector<char> finer(mesh.points.size(), 0);
   if (!parallel_each(mesh.node_count(), adapt_params.threads, progress.portion(0.02, 0.05),
                      [&](std::size_t i) {
                        const Vec<3>& x = mesh.points[i + 1];
                        const Metric<3> m = metric_at ? metric_at(x) : metric[i + 1];
-                       chords[i + 1] = add_chords(m, x);
+                       chords[i + 1] = field->at(m, x);
                        finer[i + 1] = chords[i + 1].determinant() > finer_share * m.determinant();
                      }))
     return cancelled_error();

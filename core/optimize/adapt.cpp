@@ -84,7 +84,7 @@ class Adaption {
     work_.metric.resize(mesh.points.size());
     parallel_each(mesh.node_count(), params.threads, {}, [&](std::size_t i) {
       work_.metric[i + 1] =
-          Packed<D>::from(metric_at ? metric_at(mesh.points[i + 1]) : metric[i + 1]);
+          Packed<D>::from(metric.empty() ? metric_at(mesh.points[i + 1]) : metric[i + 1]);
     });
     if (metric_at) {
       work_.asked = mesh.points;
@@ -338,7 +338,7 @@ Result<void> check_input(const SimplexMesh<D>& mesh, const MetricField<D>& metri
   if (mesh.elements.empty() || mesh.facets.empty())
     return Error{Code::bad_input, "The mesh to adapt has no elements or no boundary facets.",
                  "Read it again with its boundary, or generate a first mesh."};
-  if (function) return {};
+  if (function && metric.empty()) return {};
   return check_metric<D>(metric, mesh.node_count());
 }
 

@@ -65,7 +65,8 @@ struct Adapted {
 };
 
 /// Algorithm 3.1: the mesh whose elements are unit and equilateral under `metric`; the input is
-/// left untouched. Boundary facets keep their group and CAD face; nodes of the boundary stay on
+/// left untouched. With `metric_at`, which is asked wherever a node goes, `metric` is its values at
+/// the nodes of the mesh, or empty. Boundary facets keep their group and CAD face; nodes of the boundary stay on
 /// `surface` within the chord tolerance (without a surface: on the boundary of the input). Faces
 /// between bodies that the input lists as facets are held in the same way, on the facets of
 /// `surface` that have their CAD faces; those that it does not list, to what they are in the input.

@@ -28,12 +28,11 @@ using Clock = std::chrono::steady_clock;
 constexpr double kFirstMeshShare = 0.1;  // of the progress
 constexpr double kAskedScale = kAskedFiner * kAskedFiner;
 constexpr double kSettledNodes = 0.03, kSettledError = 0.03;  // relative changes
-constexpr int kReportDepth = 6;      // bisections for the figures that are reported
-constexpr double kSlope = 1;         // growth of sizes across fuzzy borders with the distance
-constexpr double kGrowth = 0.7;      // of a neighbor's sizes with the distance in its metric: ln 2
-constexpr double kChordShare = 0.6;  // of the tolerance, that chords of borders are asked for
-constexpr int kRoundsToCut = 2;      // adaptions to fuzzy borders before the mesh is cut
-constexpr double kUnseen = 0.01;     // of the tolerance: what lies deeper in others is no border
+constexpr int kReportDepth = 6;   // bisections for the figures that are reported
+constexpr double kSlope = 1;      // growth of sizes across fuzzy borders with the distance
+constexpr double kGrowth = 0.7;   // of a neighbor's sizes with the distance in its metric: ln 2
+constexpr int kRoundsToCut = 2;   // adaptions to fuzzy borders before the mesh is cut
+constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
 
 /// Regions of fuzzy interfaces are names of elements: nothing is to be held at their steps.
 SimplexMesh<3> as_one_body(SimplexMesh<3> mesh) {
@@ -218,9 +217,7 @@ class AssemblyLoop {
 
   /// What is asked where the faces of the mesh are the borders: edges along them are chords.
   Metric<3> exact_at(const Vec<3>& x) const {
-    const Metric<3> asked =
-        with_chords(natural_at(x), *of_.partition, x, kChordShare * of_.mesh_tolerance, kGrowth);
-    return chords_ ? chords_->at(asked, x) : asked;
+    return chords_ ? chords_->at(natural_at(x), x) : natural_at(x);
   }
   MetricFunction<3> natural_alone() const {
     return [this](const Vec<3>& x) -> Metric<3> { return exact_at(x) * kAskedScale; };
@@ -238,8 +235,9 @@ class AssemblyLoop {
       asked_at = [captured = captured_at()](const Vec<3>& x) -> Metric<3> {
         return captured(x) * kAskedScale;
       };
-    MetricField<3> asked = current_.metric;
-    for (std::size_t i = 1; i < asked.size(); ++i) asked[i] *= kAskedScale;
+    MetricField<3> asked;
+    if (!asked_at) asked = current_.metric;
+    for (Metric<3>& m : asked) m *= kAskedScale;
     Result<Adapted<3>> adapted = adapt<3>(as_one_body(current_.mesh), asked, wall(), params,
                                           progress.portion(0, cut ? 0.4 : 0.7), asked_at);
     if (!adapted) return adapted.error();
@@ -281,9 +279,8 @@ class AssemblyLoop {
 
   Result<void> step_exact(const Progress& progress) {
     const auto start = Clock::now();
-    Result<Adapted<3>> adapted =
-        adapt<3>(current_.mesh, current_.metric, exact_.get(), adapt_params(),
-                 progress.portion(0, 0.7), natural_alone());
+    Result<Adapted<3>> adapted = adapt<3>(current_.mesh, {}, exact_.get(), adapt_params(),
+                                          progress.portion(0, 0.7), natural_alone());
     if (!adapted) return adapted.error();
     if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return valid.error();

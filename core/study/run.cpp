@@ -101,17 +101,19 @@ class BodyLoop {
     // Asked at every accepted point, a detector that can answer there keeps walls from blurring
     // into their neighbors: two rounds reach what the nodal field does not in six.
     MetricFunction<3> asked_at;
-    MetricField<3> asked = current_.metric;
-    if (const MetricFunction<3> natural = detector_->function(natural_))
+    MetricField<3> asked;
+    if (const MetricFunction<3> natural = detector_->function(natural_)) {
       asked_at = [this, natural](const Vec<3>& x) -> Metric<3> {
         return sizing_.apply(x, of_flow_.apply(x, correction_.apply(x, natural(x), natural_.h_min),
                                                natural_.h_min)) *
                kAskedScale;
       };
-    else
+    } else {
+      asked = current_.metric;
       for (std::size_t i = 1; i < asked.size(); ++i)
         asked[i] =
             correction_.apply(current_.mesh.points[i], asked[i], natural_.h_min) * kAskedScale;
+    }
     Result<Adapted<3>> adapted = adapt<3>(current_.mesh, asked, &shape().surface, params,
                                           progress.portion(0, 0.8), asked_at);
     if (!adapted) return give_up(adapted.error());

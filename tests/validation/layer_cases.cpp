@@ -94,7 +94,7 @@ Result<std::string> against_isotropic() {
       AdaptParams adapt_params;
       adapt_params.chord_tolerance = 0.6e-3 * diagonal_of(part.surface.points);
       const Result<Adapted<3>> isotropic =
-          adapt<3>(mesh, asked, &part.surface, adapt_params, {}, even);
+          adapt<3>(mesh, {}, &part.surface, adapt_params, {}, even);
       if (!isotropic) return isotropic.error();
       const Result<Layers> layers = measure_layers(isotropic->mesh, part.surface, kCaseLayers);
       if (!layers) return layers.error();

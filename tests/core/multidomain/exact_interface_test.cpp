@@ -155,8 +155,7 @@ MetricFunction<3> tight(const Case& c) {
 Adapted<3> fuzzy_mesh(const MetricFunction<3>& metric) {
   Adapted<3> fuzzy{unit_box<3>(5), {}, {}};
   for (int i = 0; i < 3; ++i) {
-    const MetricField<3> none(fuzzy.mesh.points.size(), Metric<3>::Identity());
-    auto next = adapt<3>(fuzzy.mesh, none, nullptr, {}, {}, metric);
+    auto next = adapt<3>(fuzzy.mesh, {}, nullptr, {}, {}, metric);
     EXPECT_TRUE(next.ok());
     fuzzy = std::move(*next);
   }
