@@ -89,6 +89,34 @@ struct RayTest<2> {
   }
 };
 
+/// Squared distances of a point to the boxes of a block's facets, rounded down.
+template <int D>
+class BoxTest {
+ public:
+  BoxTest(const Vec<D>& x, const Vec<D>& center) {
+    const Vec<D> c = x - center;
+    const double slack = c.cwiseAbs().maxCoeff() * 0x1p-22;
+    for (int a = 0; a < D; ++a) {
+      above_[a] = bvh_detail::all(static_cast<float>(c[a] + slack));
+      below_[a] = bvh_detail::all(static_cast<float>(c[a] - slack));
+    }
+  }
+  template <class Block>
+  bvh_detail::Float4 operator()(const Block& block) const {
+    using namespace bvh_detail;
+    Float4 d2 = all(0);
+    for (int a = 0; a < D; ++a) {
+      const Float4 out = larger(
+          larger(load(block.bound[0][a]) - above_[a], below_[a] - load(block.bound[1][a])), all(0));
+      d2 += out * out;
+    }
+    return d2;
+  }
+
+ private:
+  bvh_detail::Float4 above_[D], below_[D];
+};
+
 }  // namespace
 
 template <int D>
@@ -96,8 +124,9 @@ struct Locator<D>::Impl {
   static constexpr int kEdges = D == 3 ? 3 : 0;  // pseudo-normals that are not of a vertex
 
   struct Block {
-    double v[D][D][4];  // [vertex][axis][facet]
-    float n[D][4];      // [axis][facet] unit normal, to tell most entered facets at once
+    double v[D][D][4];     // [vertex][axis][facet]
+    float n[D][4];         // [axis][facet] unit normal, to tell most entered facets at once
+    float bound[2][D][4];  // lower and upper, from the center; empty where a facet is repeated
     std::int32_t facet[4];
   };
 
@@ -108,6 +137,7 @@ struct Locator<D>::Impl {
   std::vector<Vec<D>> vertex_sums;                    // [vertex]
   std::vector<Block> blocks;
   Bvh<D> bvh;
+  Vec<D> center = Vec<D>::Zero();
   typename Bvh<D>::Ref root = Bvh<D>::kNothing;
   std::vector<typename Bvh<D>::Ref> face_roots;
   double diagonal = 0;
@@ -122,7 +152,8 @@ struct Locator<D>::Impl {
     }
     if (facets.empty()) return;
     diagonal = (all.hi - all.lo).norm();
-    bvh = Bvh<D>(Vec<D>(0.5 * (all.lo + all.hi)));
+    center = 0.5 * (all.lo + all.hi);
+    bvh = Bvh<D>(center);
 
     std::vector<std::int32_t> items(facets.size());
     std::iota(items.begin(), items.end(), 0);
@@ -174,6 +205,16 @@ struct Locator<D>::Impl {
       for (int k = 0; k < D; ++k)
         for (int a = 0; a < D; ++a) b.v[k][a][i % 4] = p[k][a];
       for (int a = 0; a < D; ++a) b.n[a][i % 4] = static_cast<float>(normals[order[i]][a]);
+      Box<D> box;
+      for (const Vec<D>& q : p) box.add(q);
+      const bool repeated = i % 4 > 0 && order[i] == order[i - 1];
+      constexpr float inf = std::numeric_limits<float>::infinity();
+      for (int a = 0; a < D; ++a) {
+        const auto lo = static_cast<float>(box.lo[a] - center[a]);
+        const auto hi = static_cast<float>(box.hi[a] - center[a]);
+        b.bound[0][a][i % 4] = repeated ? inf : std::nextafter(lo, -inf);
+        b.bound[1][a][i % 4] = repeated ? -inf : std::nextafter(hi, inf);
+      }
     }
   }
 
@@ -218,27 +259,33 @@ struct Locator<D>::Impl {
     }
   }
 
-  /// Foot of x on slot k of a block.
-  Foot<D> foot(const Block& block, int k, const Vec<D>& x) const {
-    std::array<Vec<D>, D> p;
-    for (int i = 0; i < D; ++i)
-      for (int a = 0; a < D; ++a) p[i][a] = block.v[i][a][k];
-    return foot_on_facet(p, x);
+  /// Calls `visit(facet, foot, squared distance)` for facets that may be nearer than `bound2`,
+  /// which it may lower.
+  template <class Visit>
+  void near(typename Bvh<D>::Ref from, const Vec<D>& x, double& bound2, Visit&& visit) const {
+    const BoxTest<D> boxes(x, center);
+    bvh.near(from, x, bound2, [&](std::int32_t b) {
+      const Block& block = blocks[b];
+      const bvh_detail::Float4 least = boxes(block);
+      for (int k = 0; k < 4; ++k) {
+        if (!(least[k] < static_cast<float>(std::min(bound2, 1e38)) * 1.000002f)) continue;
+        std::array<Vec<D>, D> p;
+        for (int i = 0; i < D; ++i)
+          for (int a = 0; a < D; ++a) p[i][a] = block.v[i][a][k];
+        const Foot<D> f = foot_on_facet(p, x);
+        visit(block.facet[k], f, (f.point - x).squaredNorm());
+      }
+    });
   }
 
   std::optional<Nearest<D>> nearest(typename Bvh<D>::Ref from, const Vec<D>& x,
                                     double within) const {
     double bound2 = within * within;
     Nearest<D> best;
-    bvh.near(from, x, bound2, [&](std::int32_t b) {
-      for (int k = 0; k < 4; ++k) {
-        const Foot<D> f = foot(blocks[b], k, x);
-        const double d2 = (f.point - x).squaredNorm();
-        if (d2 < bound2 || (best.facet < 0 && d2 <= bound2)) {
-          bound2 = d2;
-          best = {f.point, blocks[b].facet[k], d2};
-        }
-      }
+    near(from, x, bound2, [&](std::int32_t facet, const Foot<D>& f, double d2) {
+      if (!(d2 < bound2 || (best.facet < 0 && d2 <= bound2))) return;
+      bound2 = d2;
+      best = {f.point, facet, d2};
     });
     if (best.facet < 0) return std::nullopt;
     return best;
@@ -283,14 +330,8 @@ template <int D>
 void Locator<D>::all_within(const Vec<D>& x, double radius, std::vector<Nearest<D>>& found) const {
   found.clear();
   double bound2 = radius * radius;
-  impl_->bvh.near(impl_->root, x, bound2, [&](std::int32_t b) {
-    const auto& block = impl_->blocks[b];
-    for (int k = 0; k < 4; ++k) {
-      if (k > 0 && block.facet[k] == block.facet[k - 1]) break;  // the rest repeats the last one
-      const Foot<D> f = impl_->foot(block, k, x);
-      const double d2 = (f.point - x).squaredNorm();
-      if (d2 <= bound2) found.push_back({f.point, block.facet[k], d2});
-    }
+  impl_->near(impl_->root, x, bound2, [&](std::int32_t facet, const Foot<D>& f, double d2) {
+    if (d2 <= bound2) found.push_back({f.point, facet, d2});
   });
   std::sort(found.begin(), found.end(), [](const Nearest<D>& a, const Nearest<D>& b) {
     return std::tie(a.distance2, a.facet) < std::tie(b.distance2, b.facet);

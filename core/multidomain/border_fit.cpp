@@ -47,19 +47,6 @@ bool BorderFit::crowded(std::span<const NodeId> of, const Vec<3>& x) const {
   return found;
 }
 
-bool BorderFit::smooth_between(const Element& nodes) const {
-  std::array<Vec<3>, 4> normals;
-  int count = 0;
-  for (NodeId n : nodes) {
-    if (mesh_.locked[n]) return false;
-    normals[count] = partition_.zone(zone_).at(at(n)).normal;
-    for (int k = 0; k < count; ++k)
-      if (normals[k].dot(normals[count]) < bow_turn) return false;
-    ++count;
-  }
-  return true;
-}
-
 void BorderFit::bow() {
   const Zone<3>& zone = partition_.zone(zone_);
   std::size_t first = 1;

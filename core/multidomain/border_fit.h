@@ -20,8 +20,6 @@ class BorderFit {
   /// Whether an element around the nodes has one on the same smooth part of the border next to x
   /// already: another would only fold it.
   bool crowded(std::span<const NodeId> of, const Vec<3>& x) const;
-  /// Whether the border is smooth as far as the nodes tell, and none is on a feature of it.
-  bool smooth_between(const CutTopology::Element& nodes) const;
 
   /// Edges between nodes of a smooth border whose middle is too far from it get a node on it before
   /// anything is cut: elements around a chord that is too long are neither inside nor outside.

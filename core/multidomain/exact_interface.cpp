@@ -20,6 +20,9 @@ namespace {
 constexpr double curve_share = 0.1;
 /// A facet must not look away from the CAD face it is put on.
 constexpr double face_turn = 0.4;
+/// Adaptions before the cut, and growth of the node count that calls for another.
+constexpr int refinements = 2;
+constexpr double grown = 1.2;
 /// Growth of the metric's determinant that calls for a finer mesh before it is cut.
 constexpr double finer_share = 1.5;
 /// Of the tolerance: what chords are asked for. Of the distance from what is curved: how sizes
@@ -281,14 +284,20 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   whole.bodies = {partition.names().back()};
   std::fill(whole.element_body.begin(), whole.element_body.end(), 0);
   const bool stepped = whole.element_body != mesh.element_body;
-  // Chords that are too long are made short before there is an interface to be held.
+  // Chords that are too long are made short before there is an interface to be held; a mesh that
+  // is much too coarse is refined again.
   std::optional<Adapted<3>> refined;
-  if (stepped || std::count(finer.begin(), finer.end(), 1) > 0) {
+  const bool any = stepped || std::count(finer.begin(), finer.end(), 1) > 0;
+  for (int i = 0; any && i < refinements; ++i) {
+    const SimplexMesh<3>& from = refined ? refined->mesh : whole;
+    const auto before = static_cast<double>(from.node_count());
     Result<Adapted<3>> r =
-        adapt<3>(whole, chords, params.wall, adapt_params, progress.portion(0.05, 0.4), chords_at);
+        adapt<3>(from, refined ? refined->metric : chords, params.wall, adapt_params,
+                 progress.portion(0.05 + 0.2 * i, 0.25 + 0.2 * i), chords_at);
     if (!r) return r.error();
     if (r->report.cancelled) return cancelled_error();
     refined = std::move(*r);
+    if (static_cast<double>(refined->mesh.node_count()) < grown * before) break;
   }
   const SimplexMesh<3>& fuzzy = refined ? refined->mesh : whole;
   const MetricField<3>& fuzzy_metric = refined ? refined->metric : chords;

@@ -43,7 +43,8 @@ constexpr double heap = 0.02;
 /// Metric length above which edges near a border are halved.
 constexpr double long_edge = 1.4;
 constexpr int shorten_rounds = 3;
-/// Of the tolerance: how deep an element between nodes on a border is when either side will do.
+/// Of the tolerance: how deep an element at a border is when either side will do, away from feature
+/// edges.
 constexpr double doubt_share = 1;
 
 using Element = CutTopology::Element;
@@ -603,21 +604,38 @@ class Cutter {
     return true;
   }
 
+  /// Which side the elements of the background are on, and which may go to either.
   void tag() {
+    std::vector<std::int32_t> active;
+    for (std::int32_t e = 0; e < mesh_.count(); ++e)
+      if (mesh_.active(e)) active.push_back(e);
+    std::vector<char> side(active.size()), doubt(active.size());
+    parallel_each(active.size(), params_.threads, {}, [&](std::size_t i) {
+      const Element& nodes = mesh_.topo.elements[active[i]];
+      double most = 0, least = std::numeric_limits<double>::infinity(), longest2 = 0;
+      for (int k = 0; k < 4; ++k) {
+        const double phi = phi_[nodes[k]];
+        if (std::abs(phi) > std::abs(most)) most = phi;
+        least = std::min(least, std::abs(phi));
+        for (int j = 0; j < k; ++j)
+          longest2 = std::max(longest2, (at(nodes[k]) - at(nodes[j])).squaredNorm());
+      }
+      side[i] = most < 0;
+      // Elsewhere the border is too far to come in.
+      if (least * least >= longest2) return;
+      const DepthIn in = depth_in(partition_.zone(zone_), mesh_.corners(nodes));
+      // A corner may look over the border from the other side.
+      if (std::abs(in.mean) > std::abs(most)) side[i] = in.mean < 0;
+      const bool feature =
+          std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) { return mesh_.locked[n] != 0; });
+      const double limit = feature ? dip_share : doubt_share;
+      doubt[i] = std::max(in.most, std::abs(most)) <= limit * params_.tolerance;
+    });
     std::vector<std::int32_t> doubtful;
     std::vector<char> inside(static_cast<std::size_t>(mesh_.count()), 0);
-    for (std::int32_t e = 0; e < mesh_.count(); ++e) {
-      if (!mesh_.active(e)) continue;
-      const Element& nodes = mesh_.topo.elements[e];
-      double most = 0;
-      for (NodeId n : nodes)
-        if (std::abs(phi_[n]) > std::abs(most)) most = phi_[n];
-      if (most == 0) {
-        most = deepest_in(partition_.zone(zone_), mesh_.corners(nodes));
-        const double doubt = fit().smooth_between(nodes) ? doubt_share : dip_share;
-        if (std::abs(most) <= doubt * params_.tolerance) doubtful.push_back(e);
-      }
-      inside[e] = most < 0;
+    for (std::size_t i = 0; i < active.size(); ++i) {
+      inside[active[i]] = side[i];
+      if (doubt[i]) doubtful.push_back(active[i]);
     }
     BorderSides sides(mesh_, inside);
     sides.settle(doubtful);

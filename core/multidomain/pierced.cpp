@@ -47,16 +47,19 @@ std::optional<Pierced> pierced_at(const Zone<3>& zone, const Corners<3>& p,
   return Pierced{most[side], from + 0.5 * (t0 + t1) * (to - from)};
 }
 
-double deepest_in(const Zone<3>& zone, const Corners<3>& p) {
+DepthIn depth_in(const Zone<3>& zone, const Corners<3>& p) {
   constexpr int order = 5;
-  double most = 0;
+  DepthIn in;
+  int count = 0;
   for (int i = 1; i < order; ++i)
     for (int j = 1; i + j < order; ++j)
-      for (int k = 1; i + j + k < order; ++k) {
+      for (int k = 1; i + j + k < order; ++k, ++count) {
         const double f = zone.distance(lattice_point(p, i, j, k, order - i - j - k));
-        if (std::abs(f) > std::abs(most)) most = f;
+        in.most = std::max(in.most, std::abs(f));
+        in.mean += f;
       }
-  return most;
+  in.mean /= count;
+  return in;
 }
 
 }  // namespace lamella

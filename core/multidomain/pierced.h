@@ -19,7 +19,11 @@ struct Pierced {
 std::optional<Pierced> pierced_at(const Zone<3>& zone, const Corners<3>& p,
                                   const std::array<double, 4>& phi, double limit);
 
-/// The signed distance inside of a tetrahedron where its absolute value is largest.
-double deepest_in(const Zone<3>& zone, const Corners<3>& p);
+/// Signed distances of a zone at points inside of a tetrahedron, mm.
+struct DepthIn {
+  double mean = 0;
+  double most = 0;  ///< largest absolute value
+};
+DepthIn depth_in(const Zone<3>& zone, const Corners<3>& p);
 
 }  // namespace lamella

@@ -31,7 +31,6 @@ constexpr double kSettledNodes = 0.03, kSettledError = 0.03;  // relative change
 constexpr int kReportDepth = 6;   // bisections for the figures that are reported
 constexpr double kSlope = 1;      // growth of sizes across fuzzy borders with the distance
 constexpr double kGrowth = 0.7;   // of a neighbor's sizes with the distance in its metric: ln 2
-constexpr int kRoundsToCut = 2;   // adaptions to fuzzy borders before the mesh is cut
 constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
 
 /// Regions of fuzzy interfaces are names of elements: nothing is to be held at their steps.
@@ -53,13 +52,18 @@ class AssemblyLoop {
     if (!laid) return laid.error();
     SimplexMesh<3> first = std::move(laid->first);
     of_ = std::move(*laid);
+    const bool asked = std::any_of(of_.members.begin(), of_.members.end(),
+                                   [](const Member& m) { return m.interface_asked.has_value(); });
+    at_borders_ = asked ? captured_at() : [this](const Vec<3>& x) { return natural_at(x); };
     return accept(std::move(first), start, progress.portion(0.5, 1));
   }
 
   /// Errors: cancelled; failed when there is no adapted mesh to fall back to. Later ones end the
   /// loop with a note.
   Result<void> step(const Progress& progress) {
-    Result<void> done = exact_ ? step_exact(progress) : step_fuzzy(progress);
+    Result<void> done = exact_                                     ? step_exact(progress)
+                        : options_.interfaces == Interfaces::exact ? step_cut(progress)
+                                                                   : step_fuzzy(progress);
     if (done || done.error().code == Code::cancelled || records_.size() < 2) return done;
     of_.outcomes.front().notes.push_back("Iteration " + std::to_string(records_.size()) + ": " +
                                          done.error().message + " The mesh before it was kept.");
@@ -217,19 +221,14 @@ class AssemblyLoop {
 
   /// What is asked where the faces of the mesh are the borders: edges along them are chords.
   Metric<3> exact_at(const Vec<3>& x) const {
-    return chords_ ? chords_->at(natural_at(x), x) : natural_at(x);
+    return chords_ ? chords_->at(at_borders_(x), x) : at_borders_(x);
   }
-  MetricFunction<3> natural_alone() const {
+  MetricFunction<3> asked_exact() const {
     return [this](const Vec<3>& x) -> Metric<3> { return exact_at(x) * kAskedScale; };
   }
 
   Result<void> step_fuzzy(const Progress& progress) {
     const auto start = Clock::now();
-    // The last of the rounds before the cut, or the only one there is.
-    const int rounds = std::min(kRoundsToCut, options_.iterations);
-    const bool cut =
-        options_.interfaces == Interfaces::exact && static_cast<int>(records_.size()) >= rounds;
-    const AdaptParams params = adapt_params();
     MetricFunction<3> asked_at;
     if (options_.capture == Capture::distance)
       asked_at = [captured = captured_at()](const Vec<3>& x) -> Metric<3> {
@@ -238,17 +237,17 @@ class AssemblyLoop {
     MetricField<3> asked;
     if (!asked_at) asked = current_.metric;
     for (Metric<3>& m : asked) m *= kAskedScale;
-    Result<Adapted<3>> adapted = adapt<3>(as_one_body(current_.mesh), asked, wall(), params,
-                                          progress.portion(0, cut ? 0.4 : 0.7), asked_at);
+    Result<Adapted<3>> adapted = adapt<3>(as_one_body(current_.mesh), asked, wall(), adapt_params(),
+                                          progress.portion(0, 0.7), asked_at);
     if (!adapted) return adapted.error();
     if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return valid.error();
-    if (!cut) return accept(std::move(adapted->mesh), start, progress.portion(0.7, 1));
-    return cut_along_borders(*adapted, start, progress.portion(0.4, 1));
+    return accept(std::move(adapted->mesh), start, progress.portion(0.7, 1));
   }
 
-  Result<void> cut_along_borders(const Adapted<3>& adapted, Clock::time_point start,
-                                 const Progress& progress) {
+  /// From the first mesh to one that is cut along the borders.
+  Result<void> step_cut(const Progress& progress) {
+    const auto start = Clock::now();
     ExactParams exact;
     exact.adapt = adapt_params();
     exact.wall = wall();
@@ -256,8 +255,8 @@ class AssemblyLoop {
     for (std::size_t m = 0; m + 1 < of_.members.size(); ++m)
       surfaces.push_back(of_.borders_of(of_.members[m]));
     Result<Exact> made =
-        exact_interfaces(adapted.mesh, adapted.metric, *of_.partition, surfaces, exact,
-                         progress.portion(0, 0.6, "cutting along the borders"), natural_alone());
+        exact_interfaces(as_one_body(current_.mesh), {}, *of_.partition, surfaces, exact,
+                         progress.portion(0, 0.7, "cutting along the borders"), asked_exact());
     if (!made) return made.error();
     if (made->adapt.cancelled) return cancelled_error();
     SimplexMesh<3> mesh = std::move(made->mesh);
@@ -272,15 +271,15 @@ class AssemblyLoop {
                                            " pieces of sharp edges could not be followed.");
     chords_ = std::move(made->chords);
     exact_ = std::make_unique<const ReferenceSurface<3>>(std::move(made->surface));
-    Result<void> accepted = accept(std::move(mesh), start, progress.portion(0.6, 1));
-    if (!accepted) exact_.reset();  // the mesh that stays is the fuzzy one
+    Result<void> accepted = accept(std::move(mesh), start, progress.portion(0.7, 1));
+    if (!accepted) exact_.reset();  // the mesh that stays is the first one
     return accepted;
   }
 
   Result<void> step_exact(const Progress& progress) {
     const auto start = Clock::now();
     Result<Adapted<3>> adapted = adapt<3>(current_.mesh, {}, exact_.get(), adapt_params(),
-                                          progress.portion(0, 0.7), natural_alone());
+                                          progress.portion(0, 0.7), asked_exact());
     if (!adapted) return adapted.error();
     if (adapted->report.cancelled) return cancelled_error();
     if (Result<void> valid = validate<3>(adapted->mesh); !valid) return valid.error();
@@ -526,6 +525,7 @@ class AssemblyLoop {
   /// What holds the boundary and the interfaces, once the mesh was cut.
   std::unique_ptr<const ReferenceSurface<3>> exact_;
   std::shared_ptr<const ChordField> chords_;  ///< since then
+  MetricFunction<3> at_borders_;              ///< natural, and what is asked across exact borders
   MeshState current_;
   std::vector<IterationRecord> records_;
   bool settled_ = false, failed_ = false;

@@ -21,9 +21,8 @@ namespace lamella {
 
 namespace {
 
-constexpr int kCells = 6;            // of the first mesh of a box, along its longest side
-constexpr double kOfLayer = 0.25;    // size across a fuzzy border, of the layer there
-constexpr double kOfLayerCut = 0.5;  // the same of a border that the mesh is cut along
+constexpr int kCells = 6;          // of the first mesh of a box, along its longest side
+constexpr double kOfLayer = 0.25;  // size across a fuzzy border, of the layer there
 constexpr double kMinGuardShare = 0.3;
 
 Box<3> box_of(const ReferenceSurface<3>& surface) {
@@ -45,7 +44,8 @@ class Layout {
     Result<StudyZone> hull = domain_hull(study_, parts_);
     if (!hull) return hull.error();
     hull_ = std::move(*hull);
-    assembly_.border_share = options_.interfaces == Interfaces::exact ? kOfLayerCut : kOfLayer;
+    // The natural size will do where faces of the mesh are the border.
+    assembly_.border_share = options_.interfaces == Interfaces::exact ? 1 : kOfLayer;
     const Part* domain = part_called(background_);
     const Box<3> box = domain ? box_of(domain->surface) : make_zone(hull_, {hull_})->box();
     assembly_.chord_tolerance = options_.chord_tolerance.value_or(1e-3 * (box.hi - box.lo).norm());
@@ -227,8 +227,10 @@ class Layout {
     if (!sizing) return sizing.error();
     member.sizing = std::move(*sizing);
     member.interface_asked = settings.interface_size;
-    member.interface_size =
-        settings.interface_size.value_or(assembly_.border_share * thinnest_layer(member));
+    if (settings.interface_size)
+      member.interface_size = *settings.interface_size;
+    else if (options_.interfaces == Interfaces::fuzzy)
+      member.interface_size = assembly_.border_share * thinnest_layer(member);
     BodyOutcome outcome;
     outcome.name = member.part.name;
     outcome.layers_asked = member.natural.layers;

@@ -27,7 +27,8 @@ struct Member {
   LayerCorrection correction;
   CorrectionField of_flow;
   std::unique_ptr<const FaceGroups> groups;  ///< null: the study has none on it
-  double interface_size = 0;              ///< mm, across its borders, where its layers are thinnest
+  /// mm, across its borders, where its layers are thinnest; 0: exact, and not asked
+  double interface_size = 0;
   std::optional<double> interface_asked;  ///< the same for all of them; unset: a share of the layer
   bool endless = false;                   ///< a formula that ends with the domain only
 };

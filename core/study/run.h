@@ -43,7 +43,7 @@ struct BodyOutcome {
   BoundaryDistance boundary_distance;  ///< between the mesh and the tessellated part
   double chord_tolerance = 0;          ///< mm, the one that was used
   double h_min = 0;                    ///< mm, the one that was used
-  double interface_size = 0;           ///< mm, the one that was used at fuzzy interfaces
+  double interface_size = 0;           ///< mm, across its borders; 0: exact, and not asked
   double interface_error = 0;          ///< relative L2 error (6.12) of its filling ratio
   LayerStats layers;
   std::vector<PlaceBelow> below;  ///< places with fewer layers than asked, the largest first

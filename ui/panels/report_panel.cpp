@@ -58,6 +58,8 @@ void ReportPanel::refresh() {
     html += QString("<td align='%1' style='padding: 4px 12px 4px 0'>%2</td>")
                 .arg(k == 0 ? "left" : "right", titles[k]);
   html += "</tr>";
+  // Fuzzy borders have no faces that could be off.
+  const bool fuzzy = !outcome->records.empty() && outcome->records.back().mixed > 0;
   for (const BodyOutcome& body : outcome->bodies) {
     const double off =
         body.cad_volume > 0 ? (body.mesh_volume - body.cad_volume) / body.cad_volume * 100 : 0;
@@ -70,8 +72,6 @@ void ReportPanel::refresh() {
     html += cell(tr("%1 %").arg(body.layers.share_reached * 100, 0, 'f', 1));
     html += cell(units::volume(body.mesh_volume));
     html += cell(tr("%1 %").arg(off, 0, 'f', 3));
-    // Fuzzy borders have no faces that could be off.
-    const bool fuzzy = body.interface_size > 0;
     html += cell(fuzzy ? tr("–")
                        : tr("%1 of %2")
                              .arg(units::number(body.boundary_distance.largest(), 3),

@@ -31,8 +31,8 @@ TEST(Pierced, NothingPassesThroughOneSide) {
 }
 
 TEST(Pierced, TheDeepestPointTellsTheSide) {
-  EXPECT_LT(deepest_in(*half_space_zone<3>(Vec<3>(1, 0, 0), 2), tetrahedron), 0);
-  EXPECT_GT(deepest_in(*half_space_zone<3>(Vec<3>(1, 0, 0), 0.1), tetrahedron), 0);
+  EXPECT_LT(depth_in(*half_space_zone<3>(Vec<3>(1, 0, 0), 2), tetrahedron).mean, 0);
+  EXPECT_GT(depth_in(*half_space_zone<3>(Vec<3>(1, 0, 0), 0.1), tetrahedron).mean, 0);
 }
 
 }  // namespace
