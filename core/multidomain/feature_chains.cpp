@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/geometry/edge_table.h"
 #include "core/geometry/foot.h"
 
 namespace lamella {
@@ -86,6 +87,30 @@ std::vector<std::vector<Vec<3>>> feature_chains(const ReferenceSurface<3>& surfa
     for (const End& e : ends)
       if (!used[e.edge] && (anywhere || stop[e.vertex])) follow(e);
   return chains;
+}
+
+ReferenceSurface<3> with_creases(ReferenceSurface<3> surface, double tolerance) {
+  std::vector<std::array<std::int32_t, 2>> known;
+  for (const auto& [a, b] : surface.feature_edges)
+    known.push_back({std::min(a, b), std::max(a, b)});
+  std::sort(known.begin(), known.end());
+  const auto normal = [&](std::int32_t f) {
+    const auto& v = surface.facets[f];
+    return facet_normal<3>({surface.points[v[0]], surface.points[v[1]], surface.points[v[2]]});
+  };
+  for_each_edge(edge_uses(surface.facets), [&](std::span<const EdgeUse> uses) {
+    if (uses.size() != 2 ||
+        std::binary_search(known.begin(), known.end(), std::array{uses[0].a, uses[0].b}))
+      return;
+    const Vec<3> m = normal(uses[0].facet), n = normal(uses[1].facet);
+    const double length = (surface.points[uses[0].b] - surface.points[uses[0].a]).norm();
+    const double one = m.norm() / length, two = n.norm() / length;  // heights over the edge
+    if (!(one > 0 && two > 0)) return;
+    const double angle = std::atan2(m.cross(n).norm(), m.dot(n));
+    if (angle * one * two / (one + two) > tolerance)
+      surface.feature_edges.push_back({uses[0].a, uses[0].b});
+  });
+  return surface;
 }
 
 }  // namespace lamella

@@ -55,5 +55,26 @@ TEST(FeatureChains, ACircleIsThinnedWithinTheTolerance) {
   }
 }
 
+TEST(Creases, AreWhatChordsWouldMiss) {
+  // A gable of 20 degrees on each side; a fan of 10 degrees a facet around a cylinder.
+  const double rise = std::tan(std::numbers::pi / 9), tolerance = 0.01;
+  auto gable = testing::prism_surface({{-1, 0}, {1, 0}, {1, 1}, {0, 1 + rise}, {-1, 1}}, 1);
+  find_features(gable, 0.75);
+  const auto ridge_among = [](const ReferenceSurface<3>& s) {
+    return std::count_if(s.feature_edges.begin(), s.feature_edges.end(), [&](const auto& e) {
+      return s.points[e[0]][2] > 1.1 && s.points[e[1]][2] > 1.1;
+    });
+  };
+  ASSERT_EQ(ridge_among(gable), 0);
+  EXPECT_EQ(ridge_among(with_creases(gable, tolerance)), 1);
+  EXPECT_EQ(ridge_among(with_creases(gable, 1)), 0);  // no deeper than allowed
+  EXPECT_EQ(with_creases(gable, 1).feature_edges, gable.feature_edges);
+
+  const double radius = 0.5;
+  auto tube = testing::tube_surface(0.5 * radius, radius, 1, 36, 1);
+  find_features(tube, 0.6);
+  EXPECT_EQ(with_creases(tube, tolerance).feature_edges, tube.feature_edges);
+}
+
 }  // namespace
 }  // namespace lamella
