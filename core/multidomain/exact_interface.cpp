@@ -189,7 +189,9 @@ class Finish {
       }
       return where[n];
     };
-    for (const auto& [e, around] : edges_of(mesh.facets)) {
+    for (const auto& edge : edges_of(mesh.facets)) {
+      const auto& e = edge.first;
+      const auto& around = edge.second;
       const bool differ = std::any_of(around.begin(), around.end(), [&](std::size_t f) {
         return mesh.facet_group[f] != mesh.facet_group[around[0]];
       });
