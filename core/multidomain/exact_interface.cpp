@@ -263,6 +263,7 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   CutParams cut_params;
   cut_params.tolerance = *adapt_params.chord_tolerance;
   cut_params.snap = params.snap;
+  cut_params.chord_error = params.chord_error;
   cut_params.threads = adapt_params.threads;
   const double tolerance = cut_params.tolerance;
   const auto field =

@@ -10,6 +10,7 @@ struct ExactParams {
   /// Of the mesh that was cut; its chord tolerance holds for the interfaces too.
   AdaptParams adapt;
   double snap = 0.4;  ///< of the size across: nodes nearer to a border are moved onto it
+  std::vector<double> chord_error{};  ///< [region] mm, see CutParams
   /// The boundary of the domain, with the CAD faces of the mesh; null: that of the mesh is plane
   /// enough to be its own reference.
   const ReferenceSurface<3>* wall = nullptr;

@@ -31,8 +31,8 @@ constexpr double feature_share = 0.25;
 constexpr double smooth_turn = 0.8;
 /// Of the tolerance: what the straight pieces of a feature line may take.
 constexpr double chain_share = 0.2;
-/// Of the tolerance: how deep a chord over a crease may lie before the mesh follows it.
-constexpr double crease_share = 1;
+/// Of the error of chords: what a chord over two of them lies deep at most, 4, and a margin.
+constexpr double crease_of_chords = 8;
 /// Rounds of looking for edges that cross a border.
 constexpr int split_rounds = 12;
 /// Rounds of looking for elements that a border passes through, and of the tolerance: how deep.
@@ -220,8 +220,12 @@ class Cutter {
   }
 
   bool follow_features(const ReferenceSurface<3>& surface, const Progress& progress) {
-    const auto chains = feature_chains(with_creases(surface, crease_share * params_.tolerance),
-                                       chain_share * params_.tolerance);
+    double deep = params_.tolerance;
+    if (!params_.chord_error.empty())
+      deep =
+          std::max(deep, crease_of_chords * params_.chord_error[static_cast<std::size_t>(zone_)]);
+    const auto chains =
+        feature_chains(with_creases(surface, deep), chain_share * params_.tolerance);
     for (std::int32_t c : surface.corners) {
       if (progress.cancelled()) return false;
       if (reachable(surface.points[c])) place(surface.points[c]);

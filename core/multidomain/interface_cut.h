@@ -14,7 +14,9 @@ namespace lamella {
 struct CutParams {
   double tolerance = 0;  ///< mm, > 0: how far an interface may lie from the borders
   double snap = 0.4;     ///< of the size across: nodes nearer to a border are moved onto it
-  int threads = 0;       ///< 0: all cores; the result does not depend on it
+  /// [region] mm: how far its surface, of chords of a smooth one, is from that; empty: not at all
+  std::vector<double> chord_error{};
+  int threads = 0;  ///< 0: all cores; the result does not depend on it
 };
 
 /// A mesh whose faces follow the borders between regions.

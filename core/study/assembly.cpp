@@ -252,8 +252,10 @@ class AssemblyLoop {
     exact.adapt = adapt_params();
     exact.wall = wall();
     std::vector<ReferenceSurface<3>> surfaces;
-    for (std::size_t m = 0; m + 1 < of_.members.size(); ++m)
+    for (std::size_t m = 0; m + 1 < of_.members.size(); ++m) {
       surfaces.push_back(of_.borders_of(of_.members[m]));
+      exact.chord_error.push_back(of_.members[m].part.chord_error);
+    }
     Result<Exact> made =
         exact_interfaces(as_one_body(current_.mesh), {}, *of_.partition, surfaces, exact,
                          progress.portion(0, 0.7, "cutting along the borders"), asked_exact());
