@@ -41,7 +41,7 @@ constexpr double pierced_share = 0.8;
 /// The least barycentric weight of a node there.
 constexpr double least_weight = 0.08;
 /// Metric distance from a node within which there is no other to open an element.
-constexpr double heap = 0.02;
+constexpr double heap = 0.1;
 /// Metric length above which edges near a border are halved.
 constexpr double long_edge = 1.4;
 constexpr int shorten_rounds = 3;

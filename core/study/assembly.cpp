@@ -9,6 +9,7 @@
 #include "core/mesh/interfaces.h"
 #include "core/mesh/validate.h"
 #include "core/metric/intersect.h"
+#include "core/multidomain/balance.h"
 #include "core/multidomain/chord_metric.h"
 #include "core/multidomain/exact_interface.h"
 #include "core/multidomain/interface_metric.h"
@@ -28,10 +29,11 @@ using Clock = std::chrono::steady_clock;
 constexpr double kFirstMeshShare = 0.1;  // of the progress
 constexpr double kAskedScale = kAskedFiner * kAskedFiner;
 constexpr double kSettledNodes = 0.03, kSettledError = 0.03;  // relative changes
-constexpr int kReportDepth = 6;   // bisections for the figures that are reported
-constexpr double kSlope = 1;      // growth of sizes across fuzzy borders with the distance
-constexpr double kGrowth = 0.7;   // of a neighbor's sizes with the distance in its metric: ln 2
-constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
+constexpr int kReportDepth = 6;     // bisections for the figures that are reported
+constexpr double kSlope = 1;        // growth of sizes across fuzzy borders with the distance
+constexpr double kGrowth = 0.7;     // of a neighbor's sizes with the distance in its metric: ln 2
+constexpr double kOffBorder = 0.8;  // of the tolerance, that nodes may leave borders for volumes
+constexpr double kUnseen = 0.01;    // of the tolerance: what lies deeper in others is no border
 
 /// Regions of fuzzy interfaces are names of elements: nothing is to be held at their steps.
 SimplexMesh<3> as_one_body(SimplexMesh<3> mesh) {
@@ -139,11 +141,13 @@ class AssemblyLoop {
 
   /// Closes the books, the figures with a finer division at the borders than in the loop.
   Result<std::vector<BodyOutcome>> finish(const Progress& progress) {
+    if (exact_) balance();
     for (std::size_t m = 0; exact_ && m < of_.members.size(); ++m) {
       if (of_.body_of[m] < 0) continue;
       const Member& member = of_.members[m];
       const SimplexMesh<3> body = extract_body(current_.mesh, of_.body_of[m]);
       if (body.elements.empty()) continue;
+      of_.outcomes[m].mesh_volume = volume_of(body);
       Covered covered;
       if (member.bounds)
         covered = [&](const Vec<3>& x) {
@@ -170,6 +174,21 @@ class AssemblyLoop {
   }
 
  private:
+  static double volume_of(const SimplexMesh<3>& body) {
+    double volume = 0;
+    for (const auto& e : body.elements) volume += signed_measure<3>(body.corners(e));
+    return volume;
+  }
+
+  /// The last touch to exact borders: what was adapted again would go back onto them.
+  void balance() {
+    SimplexMesh<3> mesh = current_.mesh;
+    if (balance_borders(mesh, *of_.partition, first_face_, kOffBorder * of_.mesh_tolerance,
+                        options_.threads) > 0 &&
+        validate<3>(mesh).ok())
+      current_.mesh = std::move(mesh);
+  }
+
   bool flows(std::size_t m) const {
     return of_.body_of[m] >= 0 && has_flow(study_, of_.members[m].part.name);
   }
@@ -262,8 +281,9 @@ class AssemblyLoop {
     if (!made) return made.error();
     if (made->adapt.cancelled) return cancelled_error();
     SimplexMesh<3> mesh = std::move(made->mesh);
-    for (std::size_t m = 0; m < made->first_face.size(); ++m)
-      if (of_.members[m].groups) put_in_groups(*of_.members[m].groups, made->first_face[m], mesh);
+    first_face_ = made->first_face;
+    for (std::size_t m = 0; m < first_face_.size(); ++m)
+      if (of_.members[m].groups) put_in_groups(*of_.members[m].groups, first_face_[m], mesh);
     for (int region = of_.partition->background(); region >= 0; --region)
       if (of_.body_of[region] < 0) mesh = drop_body<3>(mesh, region);
     name_walls(mesh);
@@ -414,8 +434,7 @@ class AssemblyLoop {
     std::vector<NodeId> old_id;
     const SimplexMesh<3> body = extract_body(state.mesh, of_.body_of[m], &old_id);
     outcome.interface_error = 0;
-    outcome.mesh_volume = 0;
-    for (const auto& e : body.elements) outcome.mesh_volume += signed_measure<3>(body.corners(e));
+    outcome.mesh_volume = volume_of(body);
     if (body.elements.empty()) return {};
     Result<Layers> layers = measure_layers(body, member.walls(), outcome.layers_asked,
                                            options_.threads, progress.portion(0, 0.7));
@@ -527,6 +546,7 @@ class AssemblyLoop {
   /// What holds the boundary and the interfaces, once the mesh was cut.
   std::unique_ptr<const ReferenceSurface<3>> exact_;
   std::shared_ptr<const ChordField> chords_;  ///< since then
+  std::vector<std::int32_t> first_face_;      ///< [region] of its CAD faces, since then
   MetricFunction<3> at_borders_;              ///< natural, and what is asked across exact borders
   MeshState current_;
   std::vector<IterationRecord> records_;
@@ -588,6 +608,7 @@ Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
     closed = loop.finish(Progress{});
   }
   outcome.bodies = std::move(*closed);
+  outcome.state = std::make_shared<const MeshState>(loop.current());
   outcome.overlaps = loop.overlaps();
   outcome.converged = !outcome.cancelled && loop.converged();
   outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();

@@ -14,6 +14,7 @@
 #include "core/mesh/quality.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/mesh/validate.h"
+#include "core/multidomain/balance.h"
 #include "tests/support/adapt_cases.h"
 #include "tests/support/sample_surfaces.h"
 
@@ -399,6 +400,35 @@ TEST(ExactInterface, TellsWhatIsWrong) {
                                           Progress({}, stop.get_token()));
   ASSERT_FALSE(cancelled.ok());
   EXPECT_EQ(cancelled.error().code, Code::cancelled);
+}
+
+TEST(BalanceBorders, ABallKeepsItsVolume) {
+  const Case c = ball_in_box();
+  const Exact exact = made_exact(c);
+  const Partition<3> partition(c.regions);
+  SimplexMesh<3> mesh = exact.mesh;
+  EXPECT_GT(balance_borders(mesh, partition, exact.first_face, c.tolerance, 2), 100u);
+  ASSERT_TRUE(validate(mesh).ok());
+  EXPECT_LT(std::abs(test::volumes(mesh)[0] - c.volumes[0]),
+            0.2 * std::abs(test::volumes(exact.mesh)[0] - c.volumes[0]));
+  expect_on_surface(mesh, exact.surface, partition, c.tolerance);
+  SimplexMesh<3> again = exact.mesh;
+  balance_borders(again, partition, exact.first_face, c.tolerance, 1);
+  EXPECT_EQ(mesh.points, again.points);
+  // What is asked may be less.
+  again = exact.mesh;
+  balance_borders(again, partition, exact.first_face, 1e-3 * c.tolerance);
+  for (std::size_t n = 1; n < again.points.size(); ++n)
+    ASSERT_LE((again.points[n] - exact.mesh.points[n]).norm(), 1.01e-3 * c.tolerance);
+}
+
+TEST(BalanceBorders, FlatSidesAndSharpEdgesStay) {
+  const Case c = touching_boxes();
+  const Exact exact = made_exact(c);
+  SimplexMesh<3> mesh = exact.mesh;
+  balance_borders(mesh, Partition<3>(c.regions), exact.first_face, c.tolerance);
+  for (std::size_t n = 1; n < mesh.points.size(); ++n)
+    ASSERT_LT((mesh.points[n] - exact.mesh.points[n]).norm(), 1e-9);
 }
 
 }  // namespace
