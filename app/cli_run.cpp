@@ -180,7 +180,8 @@ class StudyRun {
       limit.emplace(tbb::global_control::max_allowed_parallelism,
                     static_cast<std::size_t>(threads));
     Row row;
-    const Result<void> loaded = load(job.study, progress.portion(0, 0.05));
+    Result<void> loaded = load(job.study, progress.portion(0, 0.04));
+    if (loaded) loaded = read_field(job, progress.portion(0.04, 0.05));
     if (loaded) tell_parts(parts_, job.study, console_);
     Result<Made> made = loaded ? make_mesh(job, parts_, progress.portion(0.05, 1), console_)
                                : Result<Made>(loaded.error());

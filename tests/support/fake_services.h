@@ -60,7 +60,8 @@ struct FakeServices {
       return std::vector<std::shared_ptr<const VolumeMesher>>{};
     };
     services.run = [this](const Study& study, const std::vector<Part>& parts, const auto&,
-                          const Progress& progress, const IterationSink& sink) -> Result<Outcome> {
+                          const Progress& progress, const IterationSink& sink,
+                          const auto&) -> Result<Outcome> {
       Outcome outcome;
       const int last = study.options.iterations;
       for (int k = 0; k <= last; ++k) {
