@@ -157,6 +157,10 @@ class StudyRun {
   Row run_one(std::size_t k, const Progress& progress) {
     Job job;
     job.study = with_settings(project_.study, settings_, combinations_[k]).value();
+    // A --set may have named another file.
+    if (job.study.flow && job.study.flow->field)
+      if (StudyInput& source = job.study.flow->field->source; fs::exists(source.file))
+        (void)identify(source, source.file);  // what cannot be read is told by who reads it
     job.command = line_;
     job.inputs = inputs_of(job.study);
     job.copies = project_.copies;

@@ -4,7 +4,8 @@
 
 #include "core/base/parallel.h"
 #include "core/flow/solver_field.h"
-#include "core/geometry/bvh.h"
+#include "core/geometry/simplex.h"
+#include "core/geometry/triangles.h"
 #include "core/mesh/element_locator.h"
 
 namespace lamella {
@@ -33,24 +34,14 @@ Result<void> check_extent(double field, double across) {
   return Error{Code::bad_input, text, hint};
 }
 
-Error elsewhere(std::size_t count, std::size_t all, double farthest) {
+Result<void> check_share(double away, double farthest) {
+  if (away <= 0.5) return {};
   char text[200];
   std::snprintf(text, sizeof text,
-                "The mesh of the field does not lie on this one: %zu of %zu nodes are away from "
-                "it, up to %.4g mm.",
-                count, all, farthest);
-  return {Code::bad_input, text, "It may be shifted, in another unit, or of another part."};
-}
-
-Result<void> check_distances(const std::vector<double>& distances, double size) {
-  std::size_t away = 0;
-  double farthest = 0;
-  for (const double d : distances) {
-    away += d > kElsewhere * size;
-    farthest = std::max(farthest, d);
-  }
-  if (2 * away > distances.size()) return elsewhere(away, distances.size(), farthest);
-  return {};
+                "The mesh of the field does not lie on this one: %.0f %% are away from it, up to "
+                "%.4g mm.",
+                100 * away, farthest);
+  return Error{Code::bad_input, text, "It may be shifted, in another unit, or of another part."};
 }
 
 }  // namespace
@@ -82,29 +73,41 @@ Result<TransferredField> transfer_field(const SimplexMesh<3>& from,
         distance[i] = std::sqrt(place.distance2);
       }))
     return cancelled_error();
-  if (Result<void> there = check_distances(distance, size); !there) return there.error();
+  std::size_t away = 0;
   for (const double d : distance) {
     out.farthest = std::max(out.farthest, d);
     // What the chords of two meshes of one curved boundary differ by is not outside.
     out.outside += d > 1e-3 * size;
+    away += d > kElsewhere * size;
   }
+  const double share = static_cast<double>(away) / static_cast<double>(to.node_count());
+  if (Result<void> there = check_share(share, out.farthest); !there) return there.error();
   return out;
 }
 
-Result<void> check_place(const SimplexMesh<3>& from, const std::vector<Vec<3>>& points,
+Result<void> check_place(const SimplexMesh<3>& from, const ReferenceSurface<3>& surface,
                          double across, int threads, const Progress& progress) {
   if (from.elements.empty()) return Error{Code::bad_input, "A mesh has no elements.", ""};
   if (Result<void> fits = check_extent(diagonal_of_nodes(from), across); !fits) return fits;
   const ElementLocator<3> locator(from, progress.portion(0, 0.5));
   if (progress.cancelled()) return cancelled_error();
-  Box<3> box;
-  for (const Vec<3>& p : points) box.add(p);
-  std::vector<double> distance(points.size(), 0);
-  if (!parallel_each(points.size(), threads, progress.portion(0.5, 1), [&](std::size_t i) {
-        distance[i] = std::sqrt(locator.locate(points[i]).distance2);
+  const double size = diagonal_of(surface.points);
+  std::vector<double> distance(surface.facets.size(), 0), area(surface.facets.size(), 0);
+  if (!parallel_each(distance.size(), threads, progress.portion(0.5, 1), [&](std::size_t f) {
+        std::array<Vec<3>, 3> p;
+        for (std::size_t k = 0; k < 3; ++k)
+          p[k] = surface.points[static_cast<std::size_t>(surface.facets[f][k])];
+        distance[f] = std::sqrt(locator.locate((p[0] + p[1] + p[2]) / 3).distance2);
+        area[f] = facet_normal<3>(p).norm();
       }))
     return cancelled_error();
-  return check_distances(distance, points.empty() ? 0 : (box.hi - box.lo).norm());
+  double away = 0, all = 0, farthest = 0;
+  for (std::size_t f = 0; f < distance.size(); ++f) {
+    all += area[f];
+    if (distance[f] > kElsewhere * size) away += area[f];
+    farthest = std::max(farthest, distance[f]);
+  }
+  return check_share(all > 0 ? away / all : 0, farthest);
 }
 
 }  // namespace lamella

@@ -4,6 +4,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/geometry/surface.h"
 #include "core/mesh/simplex_mesh.h"
 
 namespace lamella {
@@ -24,9 +25,9 @@ Result<TransferredField> transfer_field(const SimplexMesh<3>& from,
                                         const Progress& progress = {},
                                         std::optional<double> across = {});
 
-/// Whether half of the points, at least, lie on the mesh of a field, as above. Errors: bad_input,
-/// cancelled.
-Result<void> check_place(const SimplexMesh<3>& from, const std::vector<Vec<3>>& points,
+/// Whether half of the area of a surface, at least, lies on the mesh of a field, as above. Errors:
+/// bad_input, cancelled.
+Result<void> check_place(const SimplexMesh<3>& from, const ReferenceSurface<3>& surface,
                          double across, int threads = 0, const Progress& progress = {});
 
 }  // namespace lamella

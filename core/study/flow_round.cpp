@@ -81,6 +81,8 @@ void FlowFields::put(const FlowFields& part, const std::vector<NodeId>& node,
     shear[element[e]] = part.shear[e];
     indicator[element[e]] = part.indicator[e];
   }
+  outside += part.outside;
+  farthest = std::max(farthest, part.farthest);
   openings.insert(openings.end(), part.openings.begin(), part.openings.end());
   imbalance = std::max(imbalance, part.imbalance);
   if (part.residuals.size() > residuals.size()) residuals = part.residuals;
@@ -182,19 +184,35 @@ Result<FlowFields> flow_through(const SimplexMesh<3>& mesh, const FlowCase<3>& f
   return out;
 }
 
+namespace {
+
+/// Whether the field can be used as the method does. Errors: usage, bad_input.
+Result<void> check_use(const NodeField& field, FlowMethod method) {
+  if (!suits_field(method, field.components))
+    return Error{Code::usage,
+                 "\"" + field.name + "\" is a " + (field.components == 1 ? "number" : "vector") +
+                     ", which \"" + std::string(flow_method_name(method)) + "\" cannot use.",
+                 "An indicator is a number; a velocity is a vector; \"field\" takes both."};
+  if (method == FlowMethod::indicator &&
+      std::any_of(field.values.begin(), field.values.end(), [](double v) { return v < 0; }))
+    return Error{Code::bad_input, "\"" + field.name + "\" is negative in places: no indicator.",
+                 "Correct by its gradient (field), or write its absolute value."};
+  return {};
+}
+
+}  // namespace
+
 Result<FlowFields> field_on(const SimplexMesh<3>& mesh, const SolverField& field, FlowMethod method,
                             double across, int threads, const Progress& progress) {
   FlowFields out;
   out.field = field.field.name;
   out.components = field.field.components;
-  if (!suits_field(method, out.components))
-    return Error{Code::usage,
-                 "\"" + out.field + "\" is a " + (out.components == 1 ? "number" : "vector") +
-                     ", which \"" + std::string(flow_method_name(method)) + "\" cannot use.",
-                 "An indicator is a number; a velocity is a vector; \"field\" takes both."};
+  if (Result<void> good = check_use(field.field, method); !good) return good.error();
   Result<TransferredField> found = transfer_field(field.mesh, field.field.values, out.components,
                                                   mesh, threads, progress.portion(0, 0.8), across);
   if (!found) return found.error();
+  out.outside = found->outside;
+  out.farthest = found->farthest;
   out.resize(mesh.points.size(), mesh.elements.size());
   if (out.components == 1)
     out.number = std::move(found->values);
@@ -204,10 +222,6 @@ Result<FlowFields> field_on(const SimplexMesh<3>& mesh, const SolverField& field
   if (method == FlowMethod::direction) {
     out.indicator = direction_change<3>(mesh, out.velocity, threads);
   } else if (method == FlowMethod::indicator) {
-    for (std::size_t n = 1; n < out.number.size(); ++n)
-      if (out.number[n] < 0)
-        return Error{Code::bad_input, "\"" + out.field + "\" is negative in places: no indicator.",
-                     "Correct by its gradient, or by its absolute value."};
     for (std::size_t e = 0; e < mesh.elements.size(); ++e)
       for (const NodeId n : mesh.elements[e]) out.indicator[e] += out.number[n] / 4;
   } else {
@@ -229,17 +243,12 @@ Result<void> check_field(const Study& study, const std::vector<Part>& parts,
                          const SolverField* field, const Progress& progress) {
   if (!study.flow || !study.flow->field) return {};
   if (!field) return Error{Code::usage, "The solver's field was not read.", "Name its file again."};
-  if (!suits_field(study.flow->method, field->field.components))
-    return field_on({}, *field, study.flow->method, 0).error();
-  constexpr std::size_t enough = 2000;  // points of a surface tell where it is
+  if (Result<void> good = check_use(field->field, study.flow->method); !good) return good;
   std::optional<Error> why;
   for (const Part& part : parts) {
     if (!has_flow(study, part.name)) continue;
-    const std::vector<Vec<3>>& all = part.surface.points;
-    std::vector<Vec<3>> some;
-    for (std::size_t i = 0; i < all.size(); i += 1 + all.size() / enough) some.push_back(all[i]);
     const Result<void> there =
-        check_place(field->mesh, some, extent_of(parts), study.options.threads, progress);
+        check_place(field->mesh, part.surface, extent_of(parts), study.options.threads, progress);
     if (there) return {};
     if (there.error().code == Code::cancelled) return there;
     if (!why) why = there.error();
@@ -299,6 +308,16 @@ Result<FlowCorrection> flow_correction(const SimplexMesh<3>& mesh, const MetricF
   if (!field) return field.error();
   out.field = std::move(*field);
   return out;
+}
+
+std::string outside_note(const FlowFields& fields) {
+  if (fields.outside == 0) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%zu of %zu nodes lie outside the mesh of the field, up to %.3g mm; the nearest "
+                "place counts there.",
+                fields.outside, fields.velocity.size() - 1, fields.farthest);
+  return text;
 }
 
 std::string field_note(const FlowFields& before, const FlowFields& after,

@@ -16,6 +16,8 @@ struct FlowFields {
   std::string field;              ///< name of a solver's field; empty: a flow that was solved here
   int components = 0;             ///< of that field: 1, `number`, or 3, `velocity`
   std::vector<double> number;     ///< [node] of a solver's field; else empty
+  std::size_t outside = 0;        ///< nodes beside that field's mesh, which take what is nearest
+  double farthest = 0;            ///< mm, of these
   std::vector<Vec<3>> velocity;   ///< [node] mm/s
   std::vector<double> pressure;   ///< [node] MPa
   std::vector<double> shear;      ///< [element] 1/s, (5.4)
@@ -86,6 +88,9 @@ Result<FlowCorrection> flow_correction(const SimplexMesh<3>& mesh, const MetricF
                                        const FlowFields& flow, const StudyFlow& asked,
                                        const CorrectionField& before, double h_min, int threads = 0,
                                        const Progress& progress = {});
+
+/// How many nodes take the nearest place of a solver's field, for the user; empty: none.
+std::string outside_note(const FlowFields& fields);
 
 /// What a round of a solver's field came to, for the user.
 std::string field_note(const FlowFields& before, const FlowFields& after,

@@ -150,6 +150,8 @@ class BodyLoop {
       return {};
     }
     if (!solved) return solved;
+    if (std::string note = outside_note(*current_.flow); !note.empty())
+      outcome_.notes.push_back(who() + note);
     best_.flow = current_.flow;
     put_flow(outcome_.records[best_record_]);
     return {};
