@@ -389,8 +389,8 @@ QString FlowPanel::result_text() const {
   if (result) {
     const double extent = session_.extent();
     line(tr("nodes of the result"), QString("%L1").arg(result->content.mesh.node_count()));
-    line(tr("across"), units::length(result->across * asked.source.unit));
-    line(tr("the bodies"), units::length(extent));
+    line(tr("extent of the result"), units::length(result->across * asked.source.unit));
+    line(tr("extent of the bodies"), units::length(extent));
   }
   const auto state = session_.shown_state();
   const FlowFields* flow = state ? state->flow.get() : nullptr;
@@ -399,6 +399,9 @@ QString FlowPanel::result_text() const {
     const bool step = adds_gradient(session_.study().flow->method);
     line(step ? tr("change along an edge, mean") : tr("indicator, mean"),
          QString::number(flow->mean_indicator(), 'g', 3));
+    if (flow->outside > 0)
+      line(tr("nodes beside the result"),
+           tr("%L1, up to %2").arg(flow->outside).arg(units::length(flow->farthest, 3)));
     const int before = session_.shown() - 1;
     if (before >= 0)
       if (const auto& old = session_.iterations()[std::size_t(before)].state;
