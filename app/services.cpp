@@ -229,8 +229,9 @@ Result<MeshContent> read_content(const fs::path& file, const Progress& progress)
 Result<MeshContent> read_result(const fs::path& file, const Progress& progress) {
   std::string ending = file.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (ending == ".vtu" || ending == ".vtk" || ending == ".pvtu" || ending == ".pvd")
-    return read_vtk_result(file, progress);
+  // The endings of VTK, lists of files too, which are refused there.
+  for (const char* known : {".vtu", ".vtk", ".pvtu", ".pvd", ".vtm", ".vtmb", ".vtp", ".series"})
+    if (ending == known) return read_vtk_result(file, progress);
   Result<MeshContent> content = read_content(file, progress);
   if (content) elements_to_nodes(*content);
   return content;

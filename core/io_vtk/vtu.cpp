@@ -351,7 +351,10 @@ Result<MeshContent> read_vtu(const std::filesystem::path& file) {
 }
 
 Result<MeshContent> read_vtk_result(const std::filesystem::path& file, const Progress& progress) {
-  if (has_ending(file, {".pvtu", ".pvd", ".vtm", ".vtmb"}))
+  if (has_ending(file, {".vtp"}))
+    return Error{Code::bad_input, "\"" + file.string() + "\" is the result on a surface alone.",
+                 "Give the .vtu of the volume, of OpenFOAM internal.vtu."};
+  if (has_ending(file, {".pvtu", ".pvd", ".vtm", ".vtmb", ".series"}))
     return Error{Code::bad_input, "\"" + file.string() + "\" is a list of files, no result itself.",
                  "Give the .vtu of the volume that it names (of OpenFOAM internal.vtu), or save it "
                  "as one .vtu: in ParaView by Merge Blocks and Save Data."};
