@@ -40,6 +40,7 @@ Study by_the_field(FlowMethod method, const std::string& name = "T") {
   study.flow.emplace();
   study.flow->method = method;
   study.flow->growth = 3;
+  study.flow->beta = 0.25;
   study.flow->field = StudyField{{"solved.vtu"}, name};
   return study;
 }
@@ -96,14 +97,15 @@ TEST(FieldRound, AFrontThatNoWallTellsOfIsResolved) {
     ASSERT_EQ(outcome->records.size(), 4u);
     const SimplexMesh<3>& after = outcome->state->mesh;
     EXPECT_LT(after.elements.size(), 3.6 * double(before->mesh.elements.size())) << "the budget";
-    EXPECT_LT(interpolation_error(after), 0.5 * interpolation_error(before->mesh));
+    // An indicator knows no direction: all sizes get smaller.
+    const double share = method == FlowMethod::field ? 0.5 : 0.8;
+    EXPECT_LT(interpolation_error(after), share * interpolation_error(before->mesh));
     EXPECT_GE(outcome->bodies[0].layers.mean, 1.9) << "layers stay";
     // The mesh carries the field, and the note says what became of it.
     ASSERT_TRUE(outcome->state->flow);
     EXPECT_EQ(outcome->state->flow->field, study.flow->field->name);
-    for (std::size_t n = 1; n < after.points.size(); n += 7)
-      if (method == FlowMethod::field)
-        EXPECT_NEAR(outcome->state->flow->number[n], front(after.points[n]), 0.05);
+    for (std::size_t n = 1; method == FlowMethod::field && n < after.points.size(); n += 7)
+      EXPECT_NEAR(outcome->state->flow->number[n], front(after.points[n]), 0.05);
     bool told = false;
     for (const std::string& note : outcome->bodies[0].notes)
       told = told || note.find("Corrected by the field \"" + study.flow->field->name) == 0;
@@ -149,8 +151,9 @@ TEST(FieldRound, WhatCannotCorrectIsRefusedBeforeTheFirstMesh) {
         study, {plate("plate")}, real(), {}, [&](const auto&, const auto&) { ++meshes; }, field);
     EXPECT_EQ(meshes, 0);
     EXPECT_FALSE(outcome.ok());
-    if (!outcome) EXPECT_FALSE(outcome.error().hint.empty());
-    return outcome ? Error{} : outcome.error();
+    if (outcome) return Error{};
+    EXPECT_FALSE(outcome.error().hint.empty());
+    return outcome.error();
   };
   const Study study = by_the_field(FlowMethod::field);
   EXPECT_EQ(refusal(study, nullptr).code, Code::usage);
@@ -226,8 +229,10 @@ TEST(FieldRound, AMissingFileIsReadFromItsCopyOrMissed) {
   Study study = by_the_field(FlowMethod::field);
   study.flow->field->source.file = "/nowhere/solved.vtu";
   study.flow->field->source.sha256 = std::string(64, 'a');
-  const ResultReader never = [](const auto&, const auto&) -> Result<MeshContent> {
-    ADD_FAILURE() << "there is nothing to read";
+  bool asked = false;
+  const ResultReader never = [&](const std::filesystem::path&,
+                                 const Progress&) -> Result<MeshContent> {
+    asked = true;
     return MeshContent{};
   };
   const auto missing = load_field(study, {}, never);
@@ -238,6 +243,7 @@ TEST(FieldRound, AMissingFileIsReadFromItsCopyOrMissed) {
   EXPECT_EQ(*find_result(*study.flow->field, {{std::string(64, 'a'), "/tmp/copy"}}), "/tmp/copy");
   study.flow.reset();
   EXPECT_EQ(*load_field(study, {}, never), nullptr);
+  EXPECT_FALSE(asked) << "there is nothing to read";
 }
 
 }  // namespace
