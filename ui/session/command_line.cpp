@@ -217,8 +217,9 @@ Result<std::string> command_line(const Study& study) {
   if (study.flow && study.flow->viscosity != StudyFlow{}.viscosity)
     return cannot("the viscosity of the flow");
   if (study.flow && study.flow->field &&
-      std::none_of(std::begin(kFileUnits), std::end(kFileUnits),
-                   [&](const FileUnit& unit) { return unit.mm == study.flow->field->source.unit; }))
+      std::none_of(std::begin(kFileUnits), std::end(kFileUnits), [&](const FileUnit& known) {
+        return known.mm == study.flow->field->source.unit;
+      }))
     return cannot("the unit of the solver's result");
   return text + *sizing + *groups + flow_options(study) + " -o " + quoted(study.name + ".msh");
 }
