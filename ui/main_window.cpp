@@ -393,7 +393,7 @@ void MainWindow::update_actions() {
     act[a]->setEnabled(flow && flow->flow &&
                        (a == Act::flow_levels || flow->flow->components != 1));
   const bool of_solver = session_->study().flow && session_->study().flow->field;
-  act[Act::solve_flow]->setText(of_solver ? tr("&Show the solver's field") : tr("&Solve the flow"));
+  act[Act::solve_flow]->setText(of_solver ? tr("&Show the field") : tr("&Solve the flow"));
   act[Act::solve_flow]->setToolTip(
       of_solver ? tr("Lay the field of the other solver on the mesh that is shown")
                 : tr("Solve the flow between gates and vents through the mesh that is shown"));

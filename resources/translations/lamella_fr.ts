@@ -2184,10 +2184,6 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <translation>Études et pièces (*.lamella *.json %1);;Maillages (%2);;Tous les fichiers (*)</translation>
     </message>
     <message>
-        <source>&amp;Show the solver&apos;s field</source>
-        <translation>&amp;Afficher le champ du solveur</translation>
-    </message>
-    <message>
         <source>&amp;Solve the flow</source>
         <translation>&amp;Résoudre l&apos;écoulement</translation>
     </message>
@@ -2230,6 +2226,10 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
     <message>
         <source>Open as a mesh</source>
         <translation>Ouvrir comme maillage</translation>
+    </message>
+    <message>
+        <source>&amp;Show the field</source>
+        <translation>&amp;Afficher le champ</translation>
     </message>
 </context>
 <context>

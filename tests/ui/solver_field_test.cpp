@@ -92,6 +92,7 @@ TEST_F(SolverFieldTest, AResultIsReadItsUnitGuessedAndItsFieldSeen) {
   EXPECT_TRUE(window_.view().scene()->has(ColorBy::indicator));
   EXPECT_FALSE(action(Act::flow_arrows)->isEnabled()) << "a number has no direction";
   action(Act::section)->setChecked(true);
+  action(Act::section_y)->trigger();
   const QImage before = window_.view().picture();
   action(Act::flow_levels)->setChecked(true);
   QTest::qWait(30);
@@ -188,6 +189,9 @@ TEST_F(SolverFieldTest, ADroppedResultIsOfferedForCorrection) {
         box->reject();
       }
     });
+    // Qt hands a drop only to a widget that has let the drag in.
+    QDragEnterEvent enter(QPoint(100, 100), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(&window_, &enter);
     QDropEvent event(QPointF(100, 100), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
     QApplication::sendEvent(&window_, &event);
     EXPECT_TRUE(wait_idle());

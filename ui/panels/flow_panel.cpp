@@ -77,6 +77,8 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
   }
   tools->addStretch(1);
   middle->addLayout(tools);
+  source_ = make_source();
+  middle->addWidget(source_);
   found_ = styled_label({}, "soft");
   found_->setObjectName("flow_found");
   found_->setTextFormat(Qt::RichText);
@@ -114,9 +116,15 @@ QWidget* FlowPanel::make_settings() {
       tr("A run solves the flow once the mesh has settled, refines where the flow "
          "asks for it, and meshes again"));
   layout->addWidget(correct_);
-  auto* form = form_ = new Form;
+  auto* form = new Form;
   form->setVerticalSpacing(4);
-  add_source_rows();
+  from_ = new QComboBox;
+  from_->setObjectName("flow_from");
+  from_->addItems({tr("Flow, solved here"), tr("Result of another solver")});
+  from_->setToolTip(
+      tr("A Stokes flow between gates and vents, or what Moldflow, OpenFOAM\n"
+         "or any other solver has found, on whatever mesh"));
+  form->add(tr("From"), from_);
   method_ = new QComboBox;
   method_->setObjectName("flow_method");
   method_->setToolTip(
@@ -137,6 +145,10 @@ QWidget* FlowPanel::make_settings() {
   row->addWidget(weight_text_);
   form->add(tr("Strength"), weight);
   weight_title_ = qobject_cast<QLabel*>(form->labelForField(weight));
+  expected_ = styled_label({}, "soft");
+  expected_->setObjectName("flow_expected");
+  expected_->setWordWrap(true);
+  form->addRow(expected_);
   growth_ = number_box(1.05, 20, 0.1, "flow_growth",
                        tr("Elements that the correction may ask for, over those without it"));
   growth_->setPrefix("× ");
@@ -148,25 +160,19 @@ QWidget* FlowPanel::make_settings() {
   h_min_->set_automatic(tr("of the body"), 0.1);
   form->add(tr("Smallest size"), h_min_);
   layout->addLayout(form);
-  expected_ = styled_label({}, "soft");
-  expected_->setObjectName("flow_expected");
-  expected_->setWordWrap(true);
-  layout->addWidget(expected_);
   layout->addStretch(1);
   return box;
 }
 
-void FlowPanel::add_source_rows() {
-  from_ = new QComboBox;
-  from_->setObjectName("flow_from");
-  from_->addItems({tr("Flow, solved here"), tr("Result of another solver")});
-  from_->setToolTip(
-      tr("A Stokes flow between gates and vents, or what Moldflow, OpenFOAM\n"
-         "or any other solver has found, on whatever mesh"));
-  form_->add(tr("From"), from_);
+QWidget* FlowPanel::make_source() {
+  auto* source = new QWidget;
+  auto* form = new Form;
+  form->setContentsMargins(0, 0, 0, 0);
+  form->setVerticalSpacing(4);
+  source->setLayout(form);
   file_ = new QPushButton;
   file_->setObjectName("flow_file");
-  form_->add(tr("File"), file_);
+  form->add(tr("File"), file_);
   auto* row = new QWidget;
   auto* boxes = new QHBoxLayout(row);
   boxes->setContentsMargins(0, 0, 0, 0);
@@ -182,7 +188,8 @@ void FlowPanel::add_source_rows() {
     unit_->addItem(QString::fromUtf8(unit.name.data(), static_cast<int>(unit.name.size())),
                    unit.mm);
   boxes->addWidget(unit_);
-  form_->add(tr("Field, unit"), row);
+  form->add(tr("Field, unit"), row);
+  return source;
 }
 
 void FlowPanel::connect_source() {
@@ -221,8 +228,7 @@ void FlowPanel::connect_source() {
 void FlowPanel::show_source(const StudyFlow& flow) {
   const bool of_solver = flow.field.has_value();
   from_->setCurrentIndex(of_solver ? 1 : 0);
-  form_->setRowVisible(file_, of_solver);
-  form_->setRowVisible(field_->parentWidget(), of_solver);
+  source_->setVisible(of_solver);
   const auto result = session_.result();
   int components = 0;  // not known
   if (of_solver) {

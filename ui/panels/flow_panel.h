@@ -19,7 +19,6 @@ class QSpinBox;
 namespace lamella::ui {
 
 class Actions;
-class Form;
 class LengthBox;
 class Plot;
 class Session;
@@ -40,14 +39,14 @@ class FlowPanel : public QWidget {
 
  private:
   QWidget* make_settings();
-  void add_source_rows();
+  QWidget* make_source();
   void connect_source();
   void connect_boxes();
   /// One undoable step; steps of one `merge` (not 0) become one.
   void edit(const QString& what, const std::function<void(StudyFlow&)>& change, int merge = 0);
   void refresh();
   void show_flow();
-  /// The rows of what the mesh is corrected by, with what is known of the result.
+  /// What the mesh is corrected by, with what is known of the result.
   void show_source(const StudyFlow& flow);
   QString result_text() const;
   void count();
@@ -55,9 +54,9 @@ class FlowPanel : public QWidget {
   QString preview_text() const;
 
   Session& session_;
-  Form* form_;
   QCheckBox* correct_;
   QComboBox* from_;
+  QWidget* source_;  ///< file, field and unit
   QPushButton* file_;
   QComboBox* field_;
   QComboBox* unit_;
