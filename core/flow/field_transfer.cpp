@@ -92,20 +92,39 @@ Result<void> check_place(const SimplexMesh<3>& from, const ReferenceSurface<3>& 
   const ElementLocator<3> locator(from, progress.portion(0, 0.5));
   if (progress.cancelled()) return cancelled_error();
   const double size = diagonal_of(surface.points);
-  std::vector<double> distance(surface.facets.size(), 0), area(surface.facets.size(), 0);
-  if (!parallel_each(distance.size(), threads, progress.portion(0.5, 1), [&](std::size_t f) {
-        std::array<Vec<3>, 3> p;
-        for (std::size_t k = 0; k < 3; ++k)
-          p[k] = surface.points[static_cast<std::size_t>(surface.facets[f][k])];
-        distance[f] = std::sqrt(locator.locate((p[0] + p[1] + p[2]) / 3).distance2);
-        area[f] = facet_normal<3>(p).norm();
+  // Points spread over the area: large facets have many.
+  constexpr double kPoints = 2000;
+  std::vector<Vec<3>> points;
+  std::vector<double> area;
+  double all = 0;
+  const auto corners = [&](std::size_t f) {
+    std::array<Vec<3>, 3> p;
+    for (std::size_t k = 0; k < 3; ++k)
+      p[k] = surface.points[static_cast<std::size_t>(surface.facets[f][k])];
+    return p;
+  };
+  for (std::size_t f = 0; f < surface.facets.size(); ++f) all += facet_normal<3>(corners(f)).norm();
+  for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+    const std::array<Vec<3>, 3> p = corners(f);
+    const double own = facet_normal<3>(p).norm();
+    const int parts =
+        std::max(1, static_cast<int>(std::sqrt(kPoints * own / std::max(all, 1e-300))));
+    for (int i = 0; i < parts; ++i)
+      for (int j = 0; i + j < parts; ++j) {
+        points.push_back(p[0] + (i + 1.0 / 3) / parts * (p[1] - p[0]) +
+                         (j + 1.0 / 3) / parts * (p[2] - p[0]));
+        area.push_back(2 * own / (parts * (parts + 1)));
+      }
+  }
+  std::vector<double> distance(points.size(), 0);
+  if (!parallel_each(points.size(), threads, progress.portion(0.5, 1), [&](std::size_t i) {
+        distance[i] = std::sqrt(locator.locate(points[i]).distance2);
       }))
     return cancelled_error();
-  double away = 0, all = 0, farthest = 0;
-  for (std::size_t f = 0; f < distance.size(); ++f) {
-    all += area[f];
-    if (distance[f] > kElsewhere * size) away += area[f];
-    farthest = std::max(farthest, distance[f]);
+  double away = 0, farthest = 0;
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    if (distance[i] > kElsewhere * size) away += area[i];
+    farthest = std::max(farthest, distance[i]);
   }
   return check_share(all > 0 ? away / all : 0, farthest);
 }

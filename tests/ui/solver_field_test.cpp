@@ -93,6 +93,8 @@ TEST_F(SolverFieldTest, AResultIsReadItsUnitGuessedAndItsFieldSeen) {
   EXPECT_FALSE(action(Act::flow_arrows)->isEnabled()) << "a number has no direction";
   action(Act::section)->setChecked(true);
   action(Act::section_y)->trigger();
+  action(Act::crinkle)->setChecked(false);  // whole elements hide what is on the plane
+  QTest::qWait(100);
   const QImage before = window_.view().picture();
   action(Act::flow_levels)->setChecked(true);
   QTest::qWait(30);
