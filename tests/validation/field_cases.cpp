@@ -1,5 +1,6 @@
 // A mesh corrected by what another solver has found: the front of a melt in a plate, whose walls
-// know nothing of it. Table and picture of resources/docs/validation.md, which holds the reading.
+// know nothing of it. Table and picture of resources/docs/validation_field.md, which holds the
+// reading.
 
 #include <cmath>
 #include <cstdio>
@@ -174,7 +175,7 @@ Result<void> regenerate(const std::filesystem::path& docs,
   if (auto done = write_file(picture, mesh_picture(panels, "A front that walls know nothing of"));
       !done)
     return done;
-  const std::filesystem::path page_file = docs / "validation.md";
+  const std::filesystem::path page_file = docs / "validation_field.md";
   Result<std::string> page = read_file(page_file);
   if (!page) return page.error();
   if (const Result<void> set = set_table(*page, "field-front", table); !set) return set;
@@ -186,5 +187,5 @@ Result<void> regenerate(const std::filesystem::path& docs,
 
 int main(int argc, char** argv) {
   return lamella::write_tables(argc, argv, "lamella_field_cases", lamella::regenerate,
-                               ", the folder that holds validation.md");
+                               ", the folder that holds validation_field.md");
 }
