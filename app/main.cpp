@@ -139,8 +139,8 @@ int play(ui::MainWindow& window, const Script& script) {
   }
   if (failed) return exit_code(Code::bad_input);
   bool saved = true;
-  const QStringList colors{"body", "quality", "thickness", "layers", "filling",
-                           "size", "speed",   "pressure",  "shear",  "indicator", "field"};
+  const QStringList colors{"body",  "quality",  "thickness", "layers",    "filling", "size",
+                           "speed", "pressure", "shear",     "indicator", "field"};
   if (const auto color = colors.indexOf(script.color); color >= 0)
     window.view().set_color_by(ui::ColorBy(color));
   for (const auto& [name, act] :
