@@ -8,10 +8,10 @@
 #include "core/flow/correction.h"
 #include "core/flow/field_transfer.h"
 #include "core/flow/indicators.h"
+#include "core/flow/solver_field.h"
 #include "core/flow/stokes.h"
 #include "core/io/mesh_file.h"
 #include "core/io/vtu.h"
-#include "core/io_vtk/vtu.h"
 #include "core/study/flow_entry.h"
 #include "core/study/forecast.h"
 #include "core/study/measure.h"
@@ -37,29 +37,21 @@ Asked asked_of(const std::string& correct) {
 Result<NodeField> external_field(const SimplexMesh<3>& mesh, const FlowCommand& c,
                                  const Progress& progress, Console& console) {
   const std::string file = c.field_file.empty() ? c.mesh : c.field_file;
-  const std::string name = asked_of(c.correct).field;
-  if (fs::path(file).extension() != ".vtu")
-    return Error{Code::usage, "\"" + file + "\" is no .vtu: it has no field to correct by.",
-                 "Give the solver's result with --field FILE.vtu."};
-  Result<MeshContent> found = read_vtu_result(file, progress.portion(0, 0));
-  if (!found) return of_input(found.error());
-  std::string known;
-  for (NodeField& field : found->of_nodes) {
-    known += (known.empty() ? "" : ", ") + field.name;
-    if (field.name != name) continue;
-    for (Vec<3>& p : found->mesh.points) p *= unit_factor(c.field_unit);
-    Result<TransferredField> there =
-        transfer_field(found->mesh, field.values, field.components, mesh, c.threads, progress);
-    if (!there) return there.error();
-    if (there->outside > 0)
-      console.say("note: " + grouped(there->outside) + " of " + grouped(mesh.node_count()) +
-                  " nodes lie outside the mesh of the field, up to " +
-                  short_number(there->farthest, 2) + " mm; the nearest place counts there");
-    field.values = std::move(there->values);
-    return std::move(field);
-  }
-  return Error{Code::usage, "\"" + file + "\" has no field \"" + name + "\".",
-               known.empty() ? "It has none at all." : "It has: " + known + "."};
+  Result<MeshContent> content = read_result(file, progress.portion(0, 0.3));
+  if (!content) return of_input(content.error());
+  Result<SolverField> found =
+      solver_field(std::move(*content), asked_of(c.correct).field, unit_factor(c.field_unit), file);
+  if (!found) return found.error();
+  NodeField& field = found->field;
+  Result<TransferredField> there = transfer_field(found->mesh, field.values, field.components, mesh,
+                                                  c.threads, progress.portion(0.3, 1));
+  if (!there) return there.error();
+  if (there->outside > 0)
+    console.say("note: " + grouped(there->outside) + " of " + grouped(mesh.node_count()) +
+                " nodes lie outside the mesh of the field, up to " +
+                short_number(there->farthest, 2) + " mm; the nearest place counts there");
+  field.values = std::move(there->values);
+  return std::move(field);
 }
 
 template <int D>

@@ -70,6 +70,42 @@ Result<std::pair<std::string, double>> group_and_number(const std::string& text,
   return std::pair(text.substr(0, equal), *number);
 }
 
+namespace {
+
+/// METHOD, or METHOD:NAME of the field NAME in the file of --flow-field or of the study.
+Result<void> take_method(const MeshCommand& c, StudyFlow& flow) {
+  const std::size_t colon = c.flow->find(':');
+  const std::string name = c.flow->substr(0, colon);
+  const auto called = [&](const auto& methods) -> std::optional<FlowMethod> {
+    for (const FlowMethod method : methods)
+      if (name == flow_method_name(method)) return method;
+    return {};
+  };
+  const auto method = colon == name.npos ? called(kFlowMethods) : called(kFieldMethods);
+  if (!method) {
+    std::string known, of_field;
+    for (const FlowMethod m : kFlowMethods) known += std::string(flow_method_name(m)) + ", ";
+    for (const FlowMethod m : kFieldMethods)
+      of_field += (of_field.empty() ? "" : ", ") + std::string(flow_method_name(m)) + ":NAME";
+    return Error{Code::usage, "--flow knows no method \"" + *c.flow + "\".",
+                 "Use none, " + known + "or of a solver's field " + of_field + "."};
+  }
+  flow.method = *method;
+  if (colon == name.npos) {
+    flow.field.reset();
+    return {};
+  }
+  if (c.flow_field.empty() && !flow.field)
+    return Error{Code::usage, "\"" + *c.flow + "\" needs the file of the field.",
+                 "Add --flow-field FILE."};
+  if (!flow.field) flow.field.emplace();
+  flow.field->name = c.flow->substr(colon + 1);
+  if (!c.flow_field.empty()) flow.field->source = {c.flow_field, unit_factor(c.flow_field_unit)};
+  return {};
+}
+
+}  // namespace
+
 Result<void> add_flow(const MeshCommand& c, Study& study) {
   bool named = false;
   const auto give = [&](const std::string& name, GroupKind kind, std::optional<double> pressure,
@@ -104,11 +140,12 @@ Result<void> add_flow(const MeshCommand& c, Study& study) {
   if (c.flow && *c.flow == "none") study.flow.reset();
   if (c.flow && *c.flow != "none") {
     if (!study.flow) study.flow.emplace();
-    for (const FlowMethod method : kFlowMethods)
-      if (*c.flow == flow_method_name(method)) study.flow->method = method;
+    if (Result<void> good = take_method(c, *study.flow); !good) return good;
   }
+  if (!c.flow_field.empty() && (!c.flow || c.flow->find(':') == std::string::npos))
+    return Error{Code::usage, "--flow-field needs the name of a field.", "Add --flow field:NAME."};
   named = named || c.flow_strength || c.flow_beta || c.flow_growth || c.flow_rounds ||
-          !c.flow_bodies.empty();
+          c.flow_h_min || !c.flow_bodies.empty();
   if (!study.flow && named && !c.flow)
     return Error{Code::usage, "Gates and vents are for a flow.", "Add --flow METHOD."};
   if (!study.flow) return {};
@@ -116,6 +153,7 @@ Result<void> add_flow(const MeshCommand& c, Study& study) {
   if (c.flow_beta) study.flow->beta = *c.flow_beta;
   if (c.flow_growth) study.flow->growth = *c.flow_growth;
   if (c.flow_rounds) study.flow->rounds = *c.flow_rounds;
+  if (c.flow_h_min) study.flow->h_min = c.flow_h_min;
   return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/cli_common.h"
 #include "core/project/project_file.h"
+#include "core/study/study_field.h"
 
 namespace lamella::cli {
 
@@ -152,11 +153,19 @@ void tell_parts(const std::vector<Part>& parts, const Study& study, Console& con
   }
 }
 
+Result<void> read_field(Job& job, const Progress& progress) {
+  auto field = load_field(job.study, job.copies, read_result, progress);
+  if (!field) return of_input(field.error());
+  job.field = std::move(*field);
+  job.inputs = inputs_of(job.study);  // with today's hash of its file
+  return {};
+}
+
 Result<Made> make_mesh(const Job& job, const std::vector<Part>& parts, const Progress& progress,
                        Console& console) {
   Result<Outcome> outcome = run(
       job.study, parts, meshers_for(job.mesher, job.study.options.seed), progress.portion(0, 0.95),
-      [&](const IterationRecord& r, const auto&) { tell_iteration(r, console); });
+      [&](const IterationRecord& r, const auto&) { tell_iteration(r, console); }, job.field);
   if (!outcome) return outcome.error();
   // After a cancel the best mesh is written all the same: no stop request goes along any more.
   const Progress closing = outcome->cancelled ? Progress{} : progress.portion(0.95, 1, "writing");

@@ -21,6 +21,7 @@ struct Job {
   std::string command;               ///< how to reproduce it
   std::vector<InputFile> inputs;     ///< as `inputs_of` tells them
   std::map<std::string, std::filesystem::path> copies;  ///< of inputs, for projects
+  std::shared_ptr<const SolverField> field;             ///< that the study names; null: none
 };
 
 struct Made {
@@ -35,6 +36,10 @@ std::string report_stem(const std::string& output);
 
 void tell_notes(const std::vector<std::string>& notes, Console& console);
 void tell_parts(const std::vector<Part>& parts, const Study& study, Console& console);
+
+/// Reads the field of another solver that the study of the job names, if it names one.
+/// Errors: bad_input, usage.
+Result<void> read_field(Job& job, const Progress& progress);
 
 /// Runs the study, writes the mesh and its report, and tells of all of it. After a cancel the best
 /// mesh is written all the same. Errors: those of run, export_mesh and save_project.

@@ -142,9 +142,11 @@ int tell_forecast(const std::vector<BodyForecast>& bodies, bool with_sizing, Con
               {"seconds", b.seconds}};
     if (b.flow) {
       const MeshForecast& f = b.flow->mesh;
-      console.say(b.name + ", by the flow, solved " + std::to_string(b.flow->solves) +
-                  (b.flow->solves == 1 ? " time" : " times") + ": at most about " +
-                  grouped(static_cast<std::size_t>(f.nodes)) + " nodes, " +
+      console.say(b.name +
+                  (b.flow->solves == 0 ? ", by the solver's field"
+                                       : ", by the flow, solved " + std::to_string(b.flow->solves) +
+                                             (b.flow->solves == 1 ? " time" : " times")) +
+                  ": at most about " + grouped(static_cast<std::size_t>(f.nodes)) + " nodes, " +
                   grouped(static_cast<std::size_t>(f.elements)) + " elements and " +
                   grouped(static_cast<std::size_t>(f.memory) + 1) + " MB");
       told["flow"] = json_of(f);
@@ -193,10 +195,12 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
     return tell_forecast(*bodies, !study.sizing.empty(), console);
   }
   job.study = std::move(study);
+  if (Result<void> read = read_field(job, progress.portion(0.05, 0.08)); !read)
+    return console.fail(read.error());
   job.mesher = mesher_choice(c.mesher);
   job.outputs = c.outputs;
   job.report = c.report.empty() ? report_stem(c.outputs.front()) : c.report;
-  Result<Made> made = make_mesh(job, *parts, progress.portion(0.05, 1), console);
+  Result<Made> made = make_mesh(job, *parts, progress.portion(0.08, 1), console);
   if (!made) return console.fail(made.error());
   const std::optional<Error> verdict = verdict_on(*made, c.min_quality);
   return verdict ? console.fail(*verdict) : 0;

@@ -238,10 +238,12 @@ void add_flow(CLI::App* f, FlowCommand& flow) {
            "the gradient of any field (field:NAME), by an indicator to smooth (indicator:NAME), or "
            "by a velocity (acceleration:NAME, strain:NAME, combined:NAME, direction:NAME)")
           ->option_text("METHOD");
-  auto* field = f->add_option("--field", flow.field_file,
-                              "VTU file of a solver that has it, on any mesh [the mesh itself]")
-                    ->option_text("FILE")
-                    ->needs(correct);
+  auto* field =
+      f->add_option("--field", flow.field_file,
+                    "Result of a solver that has it, on any mesh: .vtu, .vtk, .msh, .. [the "
+                    "mesh itself]")
+          ->option_text("FILE")
+          ->needs(correct);
   f->add_option("--field-unit", flow.field_unit, "Its unit of length: mm, cm, m or inch [mm]")
       ->option_text("UNIT")
       ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
@@ -342,16 +344,24 @@ void add_flow_of_loop(CLI::App* m, MeshCommand& mesh) {
   several("--gate-rate", mesh.rates, "GROUP=Q", "The same with the rate that enters, mm3/s");
   several("--vent", mesh.vents, "GROUP", "Group where it leaves, at the pressure 0");
   several("--symmetry", mesh.symmetries, "GROUP", "Planes of symmetry of the flow");
-  std::vector<std::string> methods{"none"};
-  for (const FlowMethod method : kFlowMethods) methods.emplace_back(flow_method_name(method));
   m->add_option(
        "--flow", mesh.flow,
        "Solve a Stokes flow through the mesh that has settled, and correct it by the flow: "
        "where its acceleration or its velocity changes (acceleration, velocity), by the "
        "strain rate (strain), or by the change of direction or the residual made even "
-       "over the elements (direction, residual, directional)")
-      ->option_text("METHOD")
-      ->check(CLI::IsMember(methods));
+       "over the elements (direction, residual, directional); with --flow-field by a field of "
+       "another solver instead, as field:NAME (its gradient), indicator:NAME (made even), or of a "
+       "velocity acceleration:NAME, strain:NAME, combined:NAME, direction:NAME")
+      ->option_text("METHOD");
+  auto* field = m->add_option("--flow-field", mesh.flow_field,
+                              "Result of another solver that has the field, on any mesh of the "
+                              "bodies: .vtu, .vtk, .msh, ..")
+                    ->option_text("FILE");
+  m->add_option("--flow-field-unit", mesh.flow_field_unit,
+                "Its unit of length: mm, cm, m or inch [mm]")
+      ->option_text("UNIT")
+      ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
+      ->needs(field);
   m->add_option("--flow-rounds", mesh.flow_rounds,
                 "Rounds of flow and correction; 0 solves the flow alone [1]")
       ->option_text("N")
@@ -361,13 +371,14 @@ void add_flow_of_loop(CLI::App* m, MeshCommand& mesh) {
     m->add_option(name, value, what)->option_text(text)->check(CLI::PositiveNumber);
   };
   number("--flow-strength", mesh.flow_strength, "MU",
-         "Of acceleration, velocity, strain and combined: times the mu that lets them dominate the "
-         "metric "
-         "[1]");
-  number("--flow-beta", mesh.flow_beta, "B",
-         "Of direction and the residuals: factor of the mean error; below 1 refines [1]");
+         "Of acceleration, velocity, strain, combined and field: times the mu that lets them "
+         "dominate the metric [1]");
+  number(
+      "--flow-beta", mesh.flow_beta, "B",
+      "Of direction, the residuals and indicator: factor of the mean error; below 1 refines [1]");
   number("--flow-growth", mesh.flow_growth, "X",
          "Elements that the correction may ask for, over those without it, above 1 [1.5]");
+  number("--flow-h-min", mesh.flow_h_min, "X", "Smallest size of the correction, mm [no bound]");
   several("--flow-body", mesh.flow_bodies, "NAME",
           "Body that the flow corrects [all with a gate]; may be repeated");
 }

@@ -42,7 +42,8 @@ struct MeshCommand {
   std::vector<std::string> drop, boundary_layers;
   std::vector<std::string> gates, rates, vents, symmetries, flow_bodies;
   std::optional<std::string> flow;
-  std::optional<double> flow_strength, flow_beta, flow_growth;
+  std::string flow_field, flow_field_unit = "mm";
+  std::optional<double> flow_strength, flow_beta, flow_growth, flow_h_min;
   std::optional<int> flow_rounds;
   std::string report;
   bool json = false;

@@ -157,6 +157,10 @@ class StudyRun {
   Row run_one(std::size_t k, const Progress& progress) {
     Job job;
     job.study = with_settings(project_.study, settings_, combinations_[k]).value();
+    // A --set may have named another file.
+    if (job.study.flow && job.study.flow->field)
+      if (StudyInput& source = job.study.flow->field->source; fs::exists(source.file))
+        (void)identify(source, source.file);  // what cannot be read is told by who reads it
     job.command = line_;
     job.inputs = inputs_of(job.study);
     job.copies = project_.copies;
@@ -180,7 +184,8 @@ class StudyRun {
       limit.emplace(tbb::global_control::max_allowed_parallelism,
                     static_cast<std::size_t>(threads));
     Row row;
-    const Result<void> loaded = load(job.study, progress.portion(0, 0.05));
+    Result<void> loaded = load(job.study, progress.portion(0, 0.04));
+    if (loaded) loaded = read_field(job, progress.portion(0.04, 0.05));
     if (loaded) tell_parts(parts_, job.study, console_);
     Result<Made> made = loaded ? make_mesh(job, parts_, progress.portion(0.05, 1), console_)
                                : Result<Made>(loaded.error());

@@ -139,8 +139,8 @@ int play(ui::MainWindow& window, const Script& script) {
   }
   if (failed) return exit_code(Code::bad_input);
   bool saved = true;
-  const QStringList colors{"body", "quality", "thickness", "layers", "filling",
-                           "size", "speed",   "pressure",  "shear",  "indicator"};
+  const QStringList colors{"body",  "quality",  "thickness", "layers",    "filling", "size",
+                           "speed", "pressure", "shear",     "indicator", "field"};
   if (const auto color = colors.indexOf(script.color); color >= 0)
     window.view().set_color_by(ui::ColorBy(color));
   for (const auto& [name, act] :
@@ -246,7 +246,7 @@ int main(int argc, char** argv) {
   option("near", "brings what is within R of a point close", "X,Y,Z,R");
   option("color",
          "body, quality, thickness, layers, filling, size, or of a flow speed, pressure, shear or "
-         "indicator",
+         "indicator, or the field of another solver",
          "FIELD");
   option("flow", "arrows, lines, levels: what of the flow is drawn", "LIST");
   option("dark", "the dark theme");

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "core/flow/solver_field.h"
 #include "core/io/mesh_file.h"
 #include "core/io_vtk/vtk_formats.h"
+#include "core/io_vtk/vtu.h"
 #ifdef LAMELLA_WITH_MED
 #include "core/io_med/med.h"
 #endif
@@ -59,8 +61,19 @@ const char* const kVelocity = "velocity";
 const char* const kPressure = "pressure";
 const char* const kShear = "shear_rate";
 const char* const kIndicator = "flow_indicator";
+/// The field of another solver is called "field NAME".
+constexpr std::string_view kSolverField = "field ";
 
 void add_flow(const FlowFields& flow, MeshFields& fields) {
+  if (flow.components > 0) {
+    NodeField field{std::string(kSolverField) + flow.field, flow.components, flow.number};
+    if (flow.components == 3)
+      for (const Vec<3>& v : flow.velocity)
+        field.values.insert(field.values.end(), v.begin(), v.end());
+    fields.of_nodes.push_back(std::move(field));
+    fields.of_elements.push_back({kIndicator, flow.indicator});
+    return;
+  }
   NodeField velocity{kVelocity, 3, {}};
   for (const Vec<3>& v : flow.velocity)
     velocity.values.insert(velocity.values.end(), v.begin(), v.end());
@@ -75,7 +88,13 @@ std::shared_ptr<const FlowFields> flow_of(const MeshContent& content) {
   auto flow = std::make_shared<FlowFields>();
   for (const NodeField& field : content.of_nodes) {
     if (field.name == kPressure && field.components == 1) flow->pressure = field.values;
-    if (field.name != kVelocity || field.components != 3) continue;
+    const bool of_solver = field.name.rfind(kSolverField, 0) == 0;
+    if (of_solver) {
+      flow->field = field.name.substr(kSolverField.size());
+      flow->components = field.components;
+      if (field.components == 1) flow->number = field.values;
+    }
+    if ((!of_solver && field.name != kVelocity) || field.components != 3) continue;
     for (std::size_t i = 0; i + 2 < field.values.size(); i += 3)
       flow->velocity.emplace_back(field.values[i], field.values[i + 1], field.values[i + 2]);
   }
@@ -84,6 +103,10 @@ std::shared_ptr<const FlowFields> flow_of(const MeshContent& content) {
     if (field.name == kIndicator) flow->indicator = field.values;
   }
   const std::size_t nodes = content.mesh.points.size(), elements = content.mesh.elements.size();
+  if (flow->components > 0 && flow->indicator.size() == elements) {
+    flow->resize(nodes, elements);
+    return flow;
+  }
   if (flow->velocity.size() != nodes || flow->pressure.size() != nodes ||
       flow->shear.size() != elements || flow->indicator.size() != elements)
     return nullptr;
@@ -201,6 +224,17 @@ Result<MeshContent> read_content(const fs::path& file, const Progress& progress)
     return error;
   }
   return read_mesh_file(**format, source, progress);
+}
+
+Result<MeshContent> read_result(const fs::path& file, const Progress& progress) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  // The endings of VTK, lists of files too, which are refused there.
+  for (const char* known : {".vtu", ".vtk", ".pvtu", ".pvd", ".vtm", ".vtmb", ".vtp", ".series"})
+    if (ending == known) return read_vtk_result(file, progress);
+  Result<MeshContent> content = read_content(file, progress);
+  if (content) elements_to_nodes(*content);
+  return content;
 }
 
 Result<ExportCertificate> convert_mesh(const fs::path& from, const fs::path& to,

@@ -59,6 +59,11 @@ Result<ExportCertificate> convert_mesh(const std::filesystem::path& from,
 /// A mesh file with all that it holds. Errors: io, bad_input.
 Result<MeshContent> read_content(const std::filesystem::path& file, const Progress& progress = {});
 
+/// What any solver has written, with all its numbers and vectors at the nodes (`of_nodes`): VTU and
+/// VTK in any layout and of any cells, other formats as `read_content` reads them, numbers of
+/// elements averaged at the nodes. Errors: bad_input, io, cancelled.
+Result<MeshContent> read_result(const std::filesystem::path& file, const Progress& progress = {});
+
 /// A mesh of tetrahedra with the fields its file has; the others are empty. Errors: io, bad_input.
 Result<MeshState> read_mesh(const std::filesystem::path& file, const Progress& progress = {});
 

@@ -11,6 +11,7 @@ ui::Services window_services(const std::filesystem::path& sample_folder) {
                            const Progress& progress) { return load_parts(file, params, progress); };
   services.meshers = [](std::uint64_t seed) { return meshers_for(MesherChoice::automatic, seed); };
   services.run = run;
+  services.read_result = read_result;
   services.forecast = forecast_from;
   services.formats = mesh_formats();
   services.export_mesh = [](const std::filesystem::path& file, const MeshState& state,

@@ -125,6 +125,7 @@ void MainWindow::make_body() {
   results_->addTab(report, tr("Report"));
   flow_ = new FlowPanel(*session_, *actions_);
   results_->addTab(scrolled(flow_, tr("Flow")), tr("Flow"));
+  connect(flow_, &FlowPanel::result_asked, this, &MainWindow::ask_result);
   overlaps_ = new OverlapPanel(*session_);
   results_->addTab(overlaps_, tr("Overlaps and gaps"));
   auto* log = new LogPanel;
@@ -389,7 +390,13 @@ void MainWindow::update_actions() {
   act[Act::solve_flow]->setEnabled(session_->can_flow());
   const auto flow = session_->shown_state();
   for (const Act a : {Act::flow_arrows, Act::flow_lines, Act::flow_levels})
-    act[a]->setEnabled(flow && flow->flow);
+    act[a]->setEnabled(flow && flow->flow &&
+                       (a == Act::flow_levels || flow->flow->components != 1));
+  const bool of_solver = session_->study().flow && session_->study().flow->field;
+  act[Act::solve_flow]->setText(of_solver ? tr("&Show the field") : tr("&Solve the flow"));
+  act[Act::solve_flow]->setToolTip(
+      of_solver ? tr("Lay the field of the other solver on the mesh that is shown")
+                : tr("Solve the flow between gates and vents through the mesh that is shown"));
   for (int a = int(Act::add_group); a <= int(Act::correct_face); ++a)
     act[Act(a)]->setEnabled(parts);
   // They need no part to begin with.
@@ -459,8 +466,11 @@ void MainWindow::update_status() {
                     : activity == Activity::saving    ? tr("Saving…")
                     : activity == Activity::exporting ? tr("Exporting…")
                     : activity == Activity::checking  ? tr("Looking…")
-                    : activity == Activity::flowing   ? tr("Solving the flow…")
-                                                      : tr("Running…"));
+                    : activity == Activity::flowing
+                        ? session_->study().flow && session_->study().flow->field
+                              ? tr("Laying the field on the mesh…")
+                              : tr("Solving the flow…")
+                        : tr("Running…"));
     return;
   }
   if (session_->empty()) {

@@ -73,6 +73,10 @@ class MainWindow : public QMainWindow {
   void ask_export();
   void ask_picture();
   void ask_report();
+  /// Result of another solver, to correct the mesh by.
+  void ask_result();
+  /// True when a dropped file was taken for such a result, or for nothing.
+  bool drop_result(const QStringList& files);
   void report_run();
 
   Session* session_;

@@ -5,6 +5,7 @@
 #include <QFileInfo>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QPushButton>
 #include <QSettings>
 
 #include "ui/main_window.h"
@@ -180,6 +181,39 @@ void MainWindow::ask_picture() {
   }
 }
 
+void MainWindow::ask_result() {
+  const QString file =
+      QFileDialog::getOpenFileName(this, tr("Result of another solver"), folder_,
+                                   tr("Results (*.vtu *.vtk %1);;All files (*)")
+                                       .arg(mesh_patterns(session_->services().formats)));
+  if (file.isEmpty()) return;
+  folder_ = QFileInfo(file).absolutePath();
+  banner_->hide();
+  session_->open_result(file.toStdString());
+}
+
+bool MainWindow::drop_result(const QStringList& files) {
+  if (files.size() != 1 || session_->empty()) return false;
+  const QString ending = QFileInfo(files.front()).suffix().toLower();
+  if (ending != "vtu" && ending != "vtk") return false;
+  QMessageBox box(
+      QMessageBox::Question, tr("What is it?"),
+      tr("“%1” may be the result of another solver.").arg(QFileInfo(files.front()).fileName()),
+      QMessageBox::Cancel, this);
+  box.setInformativeText(tr("Its fields can show where the mesh of what is open must be finer."));
+  QPushButton* correct = box.addButton(tr("Correct by its fields"), QMessageBox::AcceptRole);
+  QPushButton* open =
+      ending == "vtu" ? box.addButton(tr("Open as a mesh"), QMessageBox::AcceptRole) : nullptr;
+  box.setDefaultButton(correct);
+  box.exec();
+  if (open && box.clickedButton() == open) return false;
+  if (box.clickedButton() != correct) return true;
+  banner_->hide();
+  folder_ = QFileInfo(files.front()).absolutePath();
+  session_->open_result(files.front().toStdString());
+  return true;
+}
+
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
   if (session_->activity() != Activity::idle || local_files(event->mimeData()).isEmpty()) return;
   event->acceptProposedAction();
@@ -191,7 +225,8 @@ void MainWindow::dragLeaveEvent(QDragLeaveEvent*) { welcome_->set_dragging(false
 void MainWindow::dropEvent(QDropEvent* event) {
   welcome_->set_dragging(false);
   event->acceptProposedAction();
-  open_files(local_files(event->mimeData()));
+  const QStringList files = local_files(event->mimeData());
+  if (!drop_result(files)) open_files(files);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

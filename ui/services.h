@@ -16,6 +16,7 @@
 #include "core/optimize/generate.h"
 #include "core/study/forecast.h"
 #include "core/study/run.h"
+#include "core/study/study_field.h"
 
 namespace lamella::ui {
 
@@ -31,8 +32,10 @@ struct Services {
   /// The main loop, see core/study/run.h.
   std::function<Result<Outcome>(const Study&, const std::vector<Part>&,
                                 const std::vector<std::shared_ptr<const VolumeMesher>>&, Progress,
-                                IterationSink)>
+                                IterationSink, std::shared_ptr<const SolverField>)>
       run;
+  /// The result of another solver, with its fields at the nodes.
+  ResultReader read_result;
   /// The mesh to expect, from first meshes made before, see core/study/forecast.h.
   std::function<Result<std::vector<BodyForecast>>(const std::vector<FirstMesh>&, const Study&,
                                                   const std::vector<Part>&, const Progress&)>

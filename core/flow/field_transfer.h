@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/geometry/surface.h"
 #include "core/mesh/simplex_mesh.h"
 
 namespace lamella {
@@ -13,11 +16,18 @@ struct TransferredField {
 };
 
 /// A field at the nodes of one mesh, linear in between, at the nodes of another of the same body.
+/// `across` (mm) is the extent of all that the field is to cover, where `to` is a part of it.
 /// Errors: bad_input (field of another length, or meshes that do not lie on one another: another
 /// unit or place), cancelled.
 Result<TransferredField> transfer_field(const SimplexMesh<3>& from,
                                         const std::vector<double>& values, int components,
                                         const SimplexMesh<3>& to, int threads = 0,
-                                        const Progress& progress = {});
+                                        const Progress& progress = {},
+                                        std::optional<double> across = {});
+
+/// Whether half of the area of a surface, at least, lies on the mesh of a field, as above. Errors:
+/// bad_input, cancelled.
+Result<void> check_place(const SimplexMesh<3>& from, const ReferenceSurface<3>& surface,
+                         double across, int threads = 0, const Progress& progress = {});
 
 }  // namespace lamella

@@ -178,10 +178,10 @@ struct Raw {
   std::vector<std::uint32_t> element_tags;
   struct Field {
     std::string name;
-    bool of_nodes = true;
+    enum class Of { nodes, elements, corners } of = Of::nodes;
     int components = 1;
     std::vector<std::uint32_t> tags;
-    std::vector<double> values;  ///< so many for each tag
+    std::vector<double> values;  ///< so many for each tag, of corners four times as many
   };
   std::vector<Field> fields;
   bool second_order = false;
@@ -335,9 +335,9 @@ void read_elements_22(Reader& r, Raw& raw) {
   }
 }
 
-void read_data(Reader& r, Raw& raw, bool of_nodes) {
+void read_data(Reader& r, Raw& raw, Raw::Field::Of of) {
   Raw::Field field;
-  field.of_nodes = of_nodes;
+  field.of = of;
   for (auto n = r.text_number<std::size_t>(); n > 0 && !r.failed(); --n) {
     const std::string text = r.quoted();
     if (field.name.empty()) field.name = text;
@@ -354,8 +354,16 @@ void read_data(Reader& r, Raw& raw, bool of_nodes) {
   field.tags.reserve(count);
   field.values.reserve(count * static_cast<std::size_t>(field.components));
   for (std::int32_t i = 0; i < tags[2] && !r.failed(); ++i) {
-    field.tags.push_back(static_cast<std::uint32_t>(r.integer()));
-    for (int c = 0; c < field.components; ++c) field.values.push_back(r.real());
+    const auto tag = static_cast<std::uint32_t>(r.integer());
+    const bool of_corners = of == Raw::Field::Of::corners;
+    const std::int32_t nodes = of_corners ? r.integer() : 1;
+    if (nodes < 0 || nodes > 1000) return r.fail();
+    // Of tetrahedra, of first and second order, the corners come first.
+    const bool used = !of_corners || nodes == 4 || nodes == 10;
+    if (used) field.tags.push_back(tag);
+    for (std::int32_t k = 0; k < nodes; ++k)
+      for (int c = 0; c < field.components; ++c)
+        if (const double value = r.real(); used && k < 4) field.values.push_back(value);
   }
   raw.fields.push_back(std::move(field));
 }
@@ -459,6 +467,31 @@ bool take_elements(const Raw::Field& field, const Raw& raw, MeshContent& out) {
   return true;
 }
 
+/// Values that elements have at their corners, each on its own: the mean at the nodes.
+void take_corners(const Raw::Field& field, const Raw& raw, MeshContent& out) {
+  if (field.components != 1 && field.components != 3) return;
+  const auto n = static_cast<std::size_t>(field.components);
+  const Numbers numbers(raw.element_tags);
+  std::vector<std::size_t> element(raw.element_tags.size() + 1);
+  for (std::size_t e = 0; e < raw.element_tags.size(); ++e)
+    element[numbers.of(raw.element_tags[e])] = e;
+  NodeField means{field.name, field.components, std::vector<double>(n * out.mesh.points.size(), 0)};
+  std::vector<int> count(out.mesh.points.size(), 0);
+  for (std::size_t i = 0; i < field.tags.size(); ++i) {
+    const NodeId number = numbers.of(field.tags[i]);
+    if (number == 0) continue;
+    const auto& corners = out.mesh.elements[element[number]];
+    for (std::size_t k = 0; k < 4; ++k) {
+      ++count[corners[k]];
+      for (std::size_t c = 0; c < n; ++c)
+        means.values[n * corners[k] + c] += field.values[n * (4 * i + k) + c];
+    }
+  }
+  for (std::size_t v = 1; v < count.size(); ++v)
+    for (std::size_t c = 0; c < n && count[v] > 1; ++c) means.values[n * v + c] /= count[v];
+  out.of_nodes.push_back(std::move(means));
+}
+
 /// False when an element uses a node that is not in the file.
 bool assemble(Raw& raw, MeshContent& out) {
   SimplexMesh<3>& mesh = out.mesh;
@@ -505,7 +538,10 @@ bool assemble(Raw& raw, MeshContent& out) {
     }
   }
   for (Raw::Field& field : raw.fields) {
-    if (!(field.of_nodes ? take_nodes(field, numbers, out) : take_elements(field, raw, out)))
+    if (field.of == Raw::Field::Of::corners)
+      take_corners(field, raw, out);
+    else if (!(field.of == Raw::Field::Of::nodes ? take_nodes(field, numbers, out)
+                                                 : take_elements(field, raw, out)))
       return false;
     field = {};  // meshes are large: nothing is kept twice for longer than needed
   }
@@ -552,8 +588,9 @@ Result<MeshContent> read_msh(const std::filesystem::path& file) {
     if (section == "Entities") read_entities(r, raw);
     if (section == "Nodes") old ? read_nodes_22(r, raw) : read_nodes(r, raw);
     if (section == "Elements") old ? read_elements_22(r, raw) : read_elements(r, raw);
-    if (section == "NodeData") read_data(r, raw, true);
-    if (section == "ElementData") read_data(r, raw, false);
+    if (section == "NodeData") read_data(r, raw, Raw::Field::Of::nodes);
+    if (section == "ElementData") read_data(r, raw, Raw::Field::Of::elements);
+    if (section == "ElementNodeData") read_data(r, raw, Raw::Field::Of::corners);
     if (!r.failed()) r.leave(section);
   }
   if (r.failed())

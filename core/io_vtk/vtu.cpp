@@ -12,9 +12,11 @@
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 
 #include "core/base/atomic_file.h"
@@ -281,9 +283,34 @@ void add_cell_fields(vtkUnstructuredGrid* grid, const SimplexMesh<3>& mesh,
   }
 }
 
+bool has_ending(const std::filesystem::path& file, std::initializer_list<std::string_view> known) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::find(known.begin(), known.end(), ending) != known.end();
+}
+
+Result<vtkSmartPointer<vtkUnstructuredGrid>> read_legacy(const std::filesystem::path& file) {
+  if (Result<std::string> whole = read_file(file); !whole) return whole.error();
+  vtkNew<vtkUnstructuredGridReader> reader;
+  reader->SetFileName(file.c_str());
+  if (!reader->IsFileUnstructuredGrid())
+    return Error{Code::bad_input,
+                 "\"" + file.string() + "\": it holds no unstructured grid of VTK.",
+                 "Save the result as an unstructured grid (.vtu)."};
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  reader->ReadAllFieldsOn();
+  reader->Update();
+  const vtkSmartPointer<vtkUnstructuredGrid> grid = reader->GetOutput();
+  if (reader->GetErrorCode() != 0 || !grid || !consistent(grid))
+    return Error{Code::bad_input, "\"" + file.string() + "\": the file is damaged.",
+                 "Write or copy it again."};
+  return grid;
+}
+
 Result<MeshContent> solver_result(const std::filesystem::path& file, const Progress&) {
   const Quiet quiet;
-  const auto grid = read_grid(file);
+  const auto grid = has_ending(file, {".vtk"}) ? read_legacy(file) : read_grid(file);
   if (!grid) return grid.error();
   vtkSmartPointer<vtkUnstructuredGrid> cut = *grid;
   for (vtkIdType c = 0; c < cut->GetNumberOfCells(); ++c) {
@@ -323,7 +350,14 @@ Result<MeshContent> read_vtu(const std::filesystem::path& file) {
   return content;
 }
 
-Result<MeshContent> read_vtu_result(const std::filesystem::path& file, const Progress& progress) {
+Result<MeshContent> read_vtk_result(const std::filesystem::path& file, const Progress& progress) {
+  if (has_ending(file, {".vtp"}))
+    return Error{Code::bad_input, "\"" + file.string() + "\" is the result on a surface alone.",
+                 "Give the .vtu of the volume, of OpenFOAM internal.vtu."};
+  if (has_ending(file, {".pvtu", ".pvd", ".vtm", ".vtmb", ".series"}))
+    return Error{Code::bad_input, "\"" + file.string() + "\" is a list of files, no result itself.",
+                 "Give the .vtu of the volume that it names (of OpenFOAM internal.vtu), or save it "
+                 "as one .vtu: in ParaView by Merge Blocks and Save Data."};
   return read_in_child(file, solver_result, progress);
 }
 

@@ -100,6 +100,9 @@ class Opening {
       if (Result<void> found = find_input(k); !found) return found.error();
       if (progress.cancelled()) return cancelled_error();
     }
+    if (project.study.flow && project.study.flow->field)
+      if (Result<void> found = find_result(project.study.flow->field->source); !found)
+        return found.error();
     // A mesh that names no study is of this one.
     if (!project.mesh.empty() && !project.mesh_study) project.mesh_study = project.study;
     progress.report(1);
@@ -127,9 +130,9 @@ class Opening {
     Result<Study> study = parse(*text, file_, &schema);
     if (!study) return study.error();
     project_.study = std::move(*study);
-    for (const StudyInput& input : project_.study.inputs)
-      if (!input.entry.empty())
-        return refuse(file_, "it names a copy of \"" + input.file + "\", which text cannot hold",
+    for (const StudyInput* input : sources_of(project_.study))
+      if (!input->entry.empty())
+        return refuse(file_, "it names a copy of \"" + input->file + "\", which text cannot hold",
                       "Take \"entry\" out.");
     std::error_code ec;
     const fs::path beside = file_.string() + ".vtu";
@@ -159,9 +162,9 @@ class Opening {
     Result<Study> study = parse(*text, file_);
     if (!study) return study.error();
     project_.study = std::move(*study);
-    for (const StudyInput& input : project_.study.inputs)
-      if (!input.entry.empty() && !archive_->find(input.entry))
-        return refuse(file_, "the copy \"" + input.entry + "\" of an input is missing",
+    for (const StudyInput* input : sources_of(project_.study))
+      if (!input->entry.empty() && !archive_->find(input->entry))
+        return refuse(file_, "the copy \"" + input->entry + "\" of an input is missing",
                       "Copy the project again, or open the .bak beside it.");
     for (const auto& [name, value] : {std::pair{kReportJson, &project_.report_json},
                                       std::pair{kReportHtml, &project_.report_html}}) {
@@ -211,50 +214,81 @@ class Opening {
     return to;
   }
 
-  Result<void> find_input(std::size_t k) {
-    StudyInput& input = project_.study.inputs[k];
+  /// Where the study links the file; true where it is there, and its hash is today's then.
+  Result<bool> find_linked(StudyInput& input, const std::string& kept) {
     const fs::path folder = fs::absolute(file_).parent_path();
     const fs::path linked = (folder / input.file).lexically_normal();
-    const StudyInput saved = input;
+    const std::string before = input.sha256;
     input.file = linked.string();
     input.entry.clear();
     std::error_code ec;
-    if (fs::exists(linked, ec)) {
-      if (Result<void> found = identify(input, linked); !found) return bad_input(found.error());
-      if (!saved.sha256.empty() && saved.sha256 != input.sha256)
-        project_.notes.push_back("\"" + linked.string() +
-                                 "\" has changed since the study was saved: it was read anew, and "
-                                 "settings, groups and sizes are kept by their names.");
-      project_.files.push_back(linked);
-      return {};
-    }
-    if (archive_ && !saved.entry.empty()) return take_copy(*archive_, file_, saved, k);
-    if (!also_.empty() && !saved.sha256.empty()) {
-      const Result<Archive> also = Archive::open(also_);
-      const ArchiveEntry* text = also ? also->find(kStudy) : nullptr;
-      const Result<std::string> json =
-          text ? also->read(*text, kLongestText) : Result<std::string>(std::string());
-      const Result<Study> study = json ? parse(*json, also_) : Result<Study>(json.error());
-      if (study)
-        for (const StudyInput& other : study->inputs)
-          if (other.sha256 == saved.sha256 && also->find(other.entry))
-            return take_copy(*also, also_, other, k);
-    }
-    return Error{Code::bad_input,
-                 "\"" + file_.string() + "\": its input \"" + linked.string() + "\" is missing.",
-                 "Put it back, or correct \"inputs\"; a project saved with copies of its inputs "
-                 "does not need them."};
+    if (!fs::exists(linked, ec)) return false;
+    if (Result<void> found = identify(input, linked); !found) return bad_input(found.error());
+    if (!before.empty() && before != input.sha256)
+      project_.notes.push_back("\"" + linked.string() +
+                               "\" has changed since the study was saved: it was read anew" + kept +
+                               ".");
+    return true;
   }
 
-  Result<void> take_copy(const Archive& archive, const fs::path& from, const StudyInput& saved,
-                         std::size_t k) {
+  /// The file, or a copy of it in this project or in `also_`; nothing where it is nowhere.
+  Result<std::optional<fs::path>> find_file(StudyInput& input, const std::string& folder,
+                                            const std::string& kept) {
+    const StudyInput saved = input;
+    const Result<bool> linked = find_linked(input, kept);
+    if (!linked) return linked.error();
+    if (*linked) return std::optional<fs::path>(input.file);
+    const auto copy = [&](const Archive& archive, const fs::path& from,
+                          const StudyInput& other) -> Result<std::optional<fs::path>> {
+      Result<fs::path> taken = take_copy(archive, from, other, input, folder);
+      if (!taken) return taken.error();
+      return std::optional(std::move(*taken));
+    };
+    if (archive_ && !saved.entry.empty()) return copy(*archive_, file_, saved);
+    if (also_.empty() || saved.sha256.empty()) return std::optional<fs::path>();
+    const Result<Archive> also = Archive::open(also_);
+    const ArchiveEntry* text = also ? also->find(kStudy) : nullptr;
+    const Result<std::string> json =
+        text ? also->read(*text, kLongestText) : Result<std::string>(std::string());
+    Result<Study> study = json ? parse(*json, also_) : Result<Study>(json.error());
+    if (study)
+      for (const StudyInput* other : sources_of(*study))
+        if (other->sha256 == saved.sha256 && also->find(other->entry))
+          return copy(*also, also_, *other);
+    return std::optional<fs::path>();
+  }
+
+  Result<void> find_input(std::size_t k) {
     StudyInput& input = project_.study.inputs[k];
+    Result<std::optional<fs::path>> found = find_file(
+        input, std::to_string(k + 1), ", and settings, groups and sizes are kept by their names");
+    if (!found) return found.error();
+    if (!*found)
+      return Error{Code::bad_input,
+                   "\"" + file_.string() + "\": its input \"" + input.file + "\" is missing.",
+                   "Put it back, or correct \"inputs\"; a project saved with copies of its inputs "
+                   "does not need them."};
+    project_.files.push_back(std::move(**found));
+    return {};
+  }
+
+  /// Without it the parts can still be seen and edited: only a run needs it.
+  Result<void> find_result(StudyInput& source) {
+    const Result<std::optional<fs::path>> found = find_file(source, "result", "");
+    if (!found) return found.error();
+    if (!*found)
+      project_.notes.push_back("The solver's result \"" + source.file +
+                               "\" is missing: a run needs it to correct the mesh by its field.");
+    return {};
+  }
+
+  Result<fs::path> take_copy(const Archive& archive, const fs::path& from, const StudyInput& saved,
+                             StudyInput& input, const std::string& folder) {
     std::string name = fs::path(input.file).filename().string();
     if (name.empty() || name == "." || name == "..") name = "part";
-    Result<fs::path> copy =
-        unpack(archive, *archive.find(saved.entry), std::to_string(k + 1), name, {});
+    Result<fs::path> copy = unpack(archive, *archive.find(saved.entry), folder, name, {});
     if (!copy) return copy.error();
-    if (Result<void> known = identify(input, *copy); !known) return known;
+    if (Result<void> known = identify(input, *copy); !known) return known.error();
     if (!saved.sha256.empty() && saved.sha256 != input.sha256)
       return refuse(from,
                     "the copy \"" + saved.entry + "\" is not what was saved, its hash differs",
@@ -262,8 +296,7 @@ class Opening {
     project_.notes.push_back("\"" + input.file +
                              "\" is missing: the copy in the project was read.");
     project_.copies[input.sha256] = *copy;
-    project_.files.push_back(std::move(*copy));
-    return {};
+    return copy;
   }
 
   static Error bad_input(Error error) {
@@ -289,9 +322,11 @@ std::string entry_name(std::size_t k, const std::string& file) {
 /// Adds copies of the inputs, each as it was when it was read.
 void embed(const ProjectContent& content, Study& study, std::vector<NewEntry>& entries,
            std::vector<std::string>& notes) {
-  for (std::size_t k = 0; k < study.inputs.size(); ++k) {
-    StudyInput& input = study.inputs[k];
-    std::vector<fs::path> places = {content.study.inputs[k].file};
+  Study named = content.study;  // as it was before its files became relative
+  const std::vector<StudyInput*> from = sources_of(named), to = sources_of(study);
+  for (std::size_t k = 0; k < to.size(); ++k) {
+    StudyInput& input = *to[k];
+    std::vector<fs::path> places = {from[k]->file};
     if (const auto copy = content.copies.find(input.sha256); copy != content.copies.end())
       places.push_back(copy->second);
     for (const fs::path& place : places) {
@@ -304,7 +339,7 @@ void embed(const ProjectContent& content, Study& study, std::vector<NewEntry>& e
       break;
     }
     if (input.entry.empty())
-      notes.push_back("\"" + content.study.inputs[k].file +
+      notes.push_back("\"" + from[k]->file +
                       "\" is no longer what was read: the project holds no copy of it.");
   }
 }
@@ -343,7 +378,7 @@ Result<std::vector<std::string>> save_project(const ProjectContent& content, con
   std::error_code ec;
   const fs::path folder = fs::absolute(file, ec).parent_path();
   Study study = seen_from(content.study, folder);
-  for (StudyInput& input : study.inputs) input.entry.clear();
+  for (StudyInput* input : sources_of(study)) input->entry.clear();
   std::vector<std::string> notes;
   if (ending_of(file) == ".json") {
     if (study.embed_inputs || content.write_mesh)
@@ -367,7 +402,7 @@ Result<std::vector<std::string>> save_project(const ProjectContent& content, con
     progress.report(0.5);
     entries.push_back({kMesh, mesh, false});
     Study made_of = seen_from(content.mesh_study.value_or(content.study), folder);
-    for (StudyInput& input : made_of.inputs) input.entry.clear();
+    for (StudyInput* input : sources_of(made_of)) input->entry.clear();
     entries.push_back({kMeshStudy, study_to_json(made_of)});
     for (const auto& [name, report] : {std::pair{kReportJson, &content.report_json},
                                        std::pair{kReportHtml, &content.report_html}}) {
@@ -396,12 +431,12 @@ Result<std::vector<std::string>> save_project(const ProjectContent& content, con
 }
 
 Study seen_from(Study study, const fs::path& folder) {
-  for (StudyInput& input : study.inputs) {
-    const fs::path absolute = fs::absolute(input.file).lexically_normal();
+  for (StudyInput* input : sources_of(study)) {
+    const fs::path absolute = fs::absolute(input->file).lexically_normal();
     const fs::path relative = folder.empty() ? fs::path() : absolute.lexically_relative(folder);
     // A file far away is better named where it is: the study may be moved without it.
     const bool near = !relative.empty() && *relative.begin() != "..";
-    input.file = near ? relative.string() : absolute.string();
+    input->file = near ? relative.string() : absolute.string();
   }
   return study;
 }

@@ -44,7 +44,8 @@ SimplexMesh<3> as_one_body(SimplexMesh<3> mesh) {
 
 class AssemblyLoop {
  public:
-  explicit AssemblyLoop(const Study& study) : study_(study), options_(study.options) {}
+  AssemblyLoop(const Study& study, const SolverField* field)
+      : study_(study), options_(study.options), field_(field) {}
 
   Result<void> begin(const std::vector<Part>& parts,
                      const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
@@ -76,7 +77,7 @@ class AssemblyLoop {
   /// The flow through each body that has one. What cannot be solved is a note. Errors: cancelled.
   Result<void> solve_flow(const Progress& progress) {
     if (!exact_) {
-      of_.outcomes.front().notes.emplace_back("Flow: only in a mesh with exact interfaces.");
+      of_.outcomes.front().notes.push_back(who() + "only in a mesh with exact interfaces.");
       return {};
     }
     auto all = std::make_shared<FlowFields>();
@@ -86,20 +87,22 @@ class AssemblyLoop {
       if (!flows(m)) continue;
       std::vector<NodeId> node;
       const SimplexMesh<3> body = extract_body(current_.mesh, of_.body_of[m], &node);
+      const FlowMethod method = study_.flow->method;
       const Result<FlowFields> flow =
-          flow_through(body, flow_case_of(study_, name), study_.flow->method, options_.threads,
-                       share(m, progress));
+          field_ ? field_on(body, *field_, method, diagonal_of_nodes(current_.mesh),
+                            options_.threads, share(m, progress))
+                 : flow_through(body, flow_case_of(study_, name), method, options_.threads,
+                                share(m, progress));
       if (!flow && flow.error().code == Code::cancelled) return flow.error();
       if (!flow) {
-        of_.outcomes[m].notes.push_back("Flow: " + flow.error().message);
+        std::vector<std::string>& notes = of_.outcomes[m].notes;
+        const std::string note = who() + flow.error().message;
+        if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
         continue;
       }
-      std::vector<std::size_t> element;
-      for (std::size_t e = 0; e < current_.mesh.elements.size(); ++e)
-        if (current_.mesh.element_body[e] == of_.body_of[m]) element.push_back(e);
-      all->put(*flow, node, element);
+      all->put(*flow, node, elements_of(m));
     }
-    if (all->openings.empty()) return {};
+    if (all->openings.empty() && all->components == 0) return {};
     records_.back().flow_rate = all->rate();
     records_.back().flow_pressure = all->highest_pressure();
     current_.flow = std::move(all);
@@ -197,18 +200,24 @@ class AssemblyLoop {
     return progress.portion(at / count, (at + 1) / count);
   }
 
+  /// What notes of the flow begin with.
+  std::string who() const { return field_ ? "Solver's field: " : "Flow: "; }
+
+  /// Of the body of a region in the current mesh.
+  std::vector<std::size_t> elements_of(std::size_t m) const {
+    std::vector<std::size_t> elements;
+    for (std::size_t e = 0; e < current_.mesh.elements.size(); ++e)
+      if (current_.mesh.element_body[e] == of_.body_of[m]) elements.push_back(e);
+    return elements;
+  }
+
   Result<void> correct_by_flow(std::size_t m, const Progress& progress) {
     Member& member = of_.members[m];
     std::vector<NodeId> node;
     const SimplexMesh<3> body = extract_body(current_.mesh, of_.body_of[m], &node);
-    FlowFields flow;
-    for (const NodeId n : node) {
-      flow.velocity.push_back(current_.flow->velocity[n]);
-      flow.pressure.push_back(current_.flow->pressure[n]);
-    }
-    for (std::size_t e = 0; e < current_.mesh.elements.size(); ++e)
-      if (current_.mesh.element_body[e] == of_.body_of[m])
-        flow.indicator.push_back(current_.flow->indicator[e]);
+    const FlowFields flow = current_.flow->of(node, elements_of(m));
+    // A body that the field does not lie on.
+    if (field_ && !(flow.mean_indicator() > 0)) return {};
     MetricField<3> natural(body.points.size(), Metric<3>::Identity());
     const auto ask = [&](std::size_t i) {
       const Vec<3>& x = body.points[i + 1];
@@ -216,15 +225,15 @@ class AssemblyLoop {
     };
     if (!parallel_each(body.node_count(), options_.threads, progress.portion(0, 0.5), ask))
       return cancelled_error();
-    Result<FlowCorrection> made =
-        flow_correction(body, natural, flow, *study_.flow, member.of_flow, member.natural.h_min,
-                        options_.threads, progress.portion(0.5, 1));
+    Result<FlowCorrection> made = flow_correction(body, natural, flow, *study_.flow, member.of_flow,
+                                                  flow_h_min(study_, member.natural.h_min),
+                                                  options_.threads, progress.portion(0.5, 1));
     if (!made) return made.error();
     member.of_flow = std::move(made->field);
     char text[120];
     std::snprintf(text, sizeof text,
-                  "Corrected by the flow: %.4g instead of %.4g elements asked for.",
-                  made->elements_after, made->elements_before);
+                  "Corrected by the %s: %.4g instead of %.4g elements asked for.",
+                  field_ ? "solver's field" : "flow", made->elements_after, made->elements_before);
     of_.outcomes[m].notes.emplace_back(text);
     return {};
   }
@@ -310,8 +319,8 @@ class AssemblyLoop {
 
   Metric<3> natural_in(int region, const Vec<3>& x) const {
     const Member& member = of_.members[region];
-    return member.sizing.apply(x,
-                               member.of_flow.apply(x, learnt_in(member, x), member.natural.h_min));
+    return member.sizing.apply(
+        x, member.of_flow.apply(x, learnt_in(member, x), flow_h_min(study_, member.natural.h_min)));
   }
   static Metric<3> learnt_in(const Member& member, const Vec<3>& x) {
     return member.correction.apply(x, member.detector->at(x, member.natural).metric,
@@ -542,6 +551,7 @@ class AssemblyLoop {
 
   const Study& study_;
   const StudyOptions& options_;
+  const SolverField* field_;  ///< in place of a flow; may be null
   Assembly of_;
   /// What holds the boundary and the interfaces, once the mesh was cut.
   std::unique_ptr<const ReferenceSurface<3>> exact_;
@@ -557,10 +567,11 @@ class AssemblyLoop {
 
 Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
                              const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
-                             const Progress& progress, const IterationSink& on_iteration) {
+                             const Progress& progress, const IterationSink& on_iteration,
+                             const SolverField* field) {
   const auto start = Clock::now();
   Outcome outcome;
-  AssemblyLoop loop(study);
+  AssemblyLoop loop(study, field);
   const auto tell = [&] {
     outcome.records.push_back(loop.last_record());
     outcome.state = std::make_shared<const MeshState>(loop.current());

@@ -10,6 +10,7 @@ namespace lamella {
 /// is no body, and for bodies outside of it.
 Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
                              const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
-                             const Progress& progress, const IterationSink& on_iteration);
+                             const Progress& progress, const IterationSink& on_iteration,
+                             const SolverField* field = nullptr);
 
 }  // namespace lamella

@@ -59,10 +59,39 @@ std::vector<std::size_t> elements_of(const SimplexMesh<3>& mesh, std::size_t bod
   return elements;
 }
 
+/// The field of another solver on the bodies that it lies on.
+Result<FlowFields> field_on_bodies(const SimplexMesh<3>& mesh, const Study& study,
+                                   const SolverField* field, const Progress& progress) {
+  if (!field) return Error{Code::usage, "The solver's field was not read.", "Name its file again."};
+  FlowFields all;
+  all.resize(mesh.points.size(), mesh.elements.size());
+  std::optional<Error> why;
+  const auto count = static_cast<double>(mesh.bodies.size());
+  for (std::size_t b = 0; b < mesh.bodies.size(); ++b) {
+    const auto at = static_cast<double>(b);
+    std::vector<NodeId> node;
+    const SimplexMesh<3> body = extract_body(mesh, static_cast<std::int32_t>(b), &node);
+    if (body.elements.empty()) continue;
+    const Result<FlowFields> found =
+        field_on(body, *field, study.flow->method, diagonal_of_nodes(mesh), study.options.threads,
+                 progress.portion(at / count, (at + 1) / count, "field"));
+    if (!found && found.error().code == Code::cancelled) return found;
+    if (found)
+      all.put(*found, node, elements_of(mesh, b));
+    else if (!why)
+      why = found.error();
+  }
+  if (all.components == 0 && why) return *why;
+  progress.report(1);
+  return all;
+}
+
 }  // namespace
 
 Result<FlowFields> flow_of_mesh(const MeshState& state, const Study& study,
-                                const std::vector<Part>& parts, const Progress& progress) {
+                                const std::vector<Part>& parts, const Progress& progress,
+                                const SolverField* field) {
+  if (study.flow && study.flow->field) return field_on_bodies(state.mesh, study, field, progress);
   const SimplexMesh<3>& mesh = state.mesh;
   const FlowMethod method = study.flow.value_or(StudyFlow{}).method;
   FlowFields all;
@@ -98,10 +127,10 @@ Result<FlowFields> flow_of_mesh(const MeshState& state, const Study& study,
 Result<FlowPreview> preview_flow(const MeshState& state, const Study& study,
                                  const Progress& progress) {
   const SimplexMesh<3>& mesh = state.mesh;
-  if (!state.flow || state.metric.size() != mesh.points.size())
+  const StudyFlow asked = study.flow.value_or(StudyFlow{});
+  if (!state.flow || !is_of(*state.flow, asked) || state.metric.size() != mesh.points.size())
     return Error{Code::usage, "The mesh has no flow, or no metric to correct.",
                  "Solve the flow first."};
-  const StudyFlow asked = study.flow.value_or(StudyFlow{});
   FlowPreview out;
   const auto count = static_cast<double>(mesh.bodies.size());
   for (std::size_t b = 0; b < mesh.bodies.size(); ++b) {
@@ -109,18 +138,13 @@ Result<FlowPreview> preview_flow(const MeshState& state, const Study& study,
     const SimplexMesh<3> body = extract_body(mesh, static_cast<std::int32_t>(b), &node);
     const BodySettings settings = settings_of(study, mesh.bodies[b]);
     if (body.elements.empty() || !settings.flow) continue;
-    FlowFields flow;
+    const FlowFields flow = state.flow->of(node, elements_of(mesh, b));
+    // Where nothing flows, or the field does not lie.
+    if (!(flow.mean_indicator() > 0)) continue;
     MetricField<3> metric;
-    double fastest = 0;
-    for (const NodeId n : node) {
-      flow.velocity.push_back(state.flow->velocity[n]);
-      metric.push_back(state.metric[n]);
-      fastest = std::max(fastest, flow.velocity.back().norm());
-    }
-    if (!(fastest > 0)) continue;
-    for (const std::size_t e : elements_of(mesh, b))
-      flow.indicator.push_back(state.flow->indicator[e]);
-    const double h_min = settings.h_min.value_or(1e-3 * diagonal_of(body.points));
+    for (const NodeId n : node) metric.push_back(state.metric[n]);
+    const double h_min =
+        flow_h_min(study, settings.h_min.value_or(1e-3 * diagonal_of(body.points)));
     const auto at = static_cast<double>(b);
     const Result<FlowCorrection> made =
         flow_correction(body, metric, flow, asked, {}, h_min, study.options.threads,

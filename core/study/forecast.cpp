@@ -40,11 +40,12 @@ std::optional<FlowForecast> forecast_flow(const Study& study, const std::string&
                                           const MeshForecast& mesh) {
   if (!has_flow(study, body)) return std::nullopt;
   FlowForecast out;
-  out.solves = study.flow->rounds + 1;
+  const bool solved = !study.flow->field;
+  out.solves = solved ? study.flow->rounds + 1 : 0;
   const double growth = study.flow->rounds > 0 ? study.flow->growth : 1;
   out.mesh.elements = growth * mesh.elements;
   out.mesh.nodes = growth * mesh.nodes;
-  out.mesh.memory = std::max(growth * mesh.memory, flow_memory(out.mesh.nodes));
+  out.mesh.memory = std::max(growth * mesh.memory, solved ? flow_memory(out.mesh.nodes) : 0);
   return out;
 }
 

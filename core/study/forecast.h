@@ -13,7 +13,7 @@ namespace lamella {
 /// What rounds of the flow may make of a mesh, at the most: their budget is a bound, and not all of
 /// it need be used.
 struct FlowForecast {
-  int solves = 0;     ///< of the flow: before each round and after the last
+  int solves = 0;     ///< of the flow: before each round and after the last; 0: a solver's field
   MeshForecast mesh;  ///< its memory is that of the flow solver or the adaption, whichever is more
 };
 
@@ -31,7 +31,7 @@ Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& f
                                      const MetricFunction<3>& natural, const SizingField& sizing,
                                      const Progress& progress = {});
 
-/// Of the body called `body`, whose mesh without a flow is `mesh`; null where no flow is asked for.
+/// Of the body called `body`, whose mesh without a flow is `mesh`; null where none is asked for.
 std::optional<FlowForecast> forecast_flow(const Study& study, const std::string& body,
                                           const MeshForecast& mesh);
 

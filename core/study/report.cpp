@@ -192,9 +192,9 @@ Result<InputFile> describe_input(const std::filesystem::path& file) {
 
 std::vector<InputFile> inputs_of(const Study& study) {
   std::vector<InputFile> inputs;
-  for (const StudyInput& input : study.inputs)
+  for (const StudyInput* input : sources_of(study))
     inputs.push_back(
-        {std::filesystem::path(input.file).filename().string(), input.bytes, input.sha256});
+        {std::filesystem::path(input->file).filename().string(), input->bytes, input->sha256});
   return inputs;
 }
 

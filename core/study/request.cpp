@@ -10,6 +10,24 @@ namespace lamella {
 
 namespace {
 
+Result<void> check_method_of_field(const Study& study, const std::vector<std::string>& names) {
+  const StudyFlow& f = *study.flow;
+  if (f.field->name.empty())
+    return Error{Code::usage, "No field of \"" + f.field->source.file + "\" is chosen.",
+                 "Choose the one to correct by."};
+  if (!suits_field(f.method, 1) && !suits_field(f.method, 3))
+    return Error{Code::usage,
+                 "\"" + std::string(flow_method_name(f.method)) +
+                     "\" needs a flow that is solved here, no field of a file.",
+                 "Use field, indicator, or of a velocity acceleration, strain, combined or "
+                 "direction."};
+  if (std::none_of(names.begin(), names.end(),
+                   [&](const std::string& name) { return has_flow(study, name); }))
+    return Error{Code::usage, "No body may be corrected by the field of the solver.",
+                 "Let one of them be corrected."};
+  return {};
+}
+
 Result<void> check_flow(const Study& study, const std::vector<std::string>& names) {
   if (!study.flow) return {};
   const auto usage = [](const std::string& message, const std::string& hint) {
@@ -22,6 +40,13 @@ Result<void> check_flow(const Study& study, const std::vector<std::string>& name
   if (!(f.growth > 1))
     return usage("The growth that the flow may cause must be above 1.", "1.5 is the default.");
   if (f.rounds < 0) return usage("Rounds of the flow cannot be negative.", "1 is the default.");
+  if (f.h_min && !(*f.h_min > 0))
+    return usage("The smallest size of the flow must be positive.", "Leave it out for none.");
+  if (f.field) return check_method_of_field(study, names);
+  if (f.method == FlowMethod::field || f.method == FlowMethod::indicator)
+    return usage("\"" + std::string(flow_method_name(f.method)) +
+                     "\" corrects by the field of another solver, and none is named.",
+                 "Name its file and the field, or choose another method.");
   bool any = false;
   for (const std::string& name : names) {
     if (!has_flow(study, name)) continue;

@@ -50,9 +50,11 @@ double layers_score(const LayerStats& layers, int asked) {
 /// The loop of one body: `begin` makes the first mesh, each `step` one iteration.
 class BodyLoop {
  public:
-  BodyLoop(const Study& study, const Part& part)
+  BodyLoop(const Study& study, const Part& part, const SolverField* field, double across)
       : study_(study),
         part_(part),
+        field_(field),
+        across_(across),
         options_(study.options),
         settings_(settings_of(study, part.name)) {
     const double diagonal = diagonal_of(part.surface.points);
@@ -62,6 +64,7 @@ class BodyLoop {
     outcome_.chord_tolerance = options_.chord_tolerance.value_or(1e-3 * diagonal);
     natural_ = natural_params(study, part);
     outcome_.h_min = natural_.h_min;
+    flow_h_min_ = flow_h_min(study, natural_.h_min);
     outcome_.notes = part.notes;
   }
 
@@ -105,7 +108,7 @@ class BodyLoop {
     if (const MetricFunction<3> natural = detector_->function(natural_)) {
       asked_at = [this, natural](const Vec<3>& x) -> Metric<3> {
         return sizing_.apply(x, of_flow_.apply(x, correction_.apply(x, natural(x), natural_.h_min),
-                                               natural_.h_min)) *
+                                               flow_h_min_)) *
                kAskedScale;
       };
     } else {
@@ -145,10 +148,12 @@ class BodyLoop {
     natural_at_nodes_ = std::move(field->metric);
     Result<void> solved = solve_flow(progress.portion(0.3, 1));
     if (!solved && solved.error().code != Code::cancelled) {
-      outcome_.notes.push_back("Flow: " + solved.error().message + " The mesh is the natural one.");
+      outcome_.notes.push_back(who() + solved.error().message + " The mesh is the natural one.");
       return {};
     }
     if (!solved) return solved;
+    if (std::string note = outside_note(*current_.flow); !note.empty())
+      outcome_.notes.push_back(who() + note);
     best_.flow = current_.flow;
     put_flow(outcome_.records[best_record_]);
     return {};
@@ -159,7 +164,7 @@ class BodyLoop {
   Result<void> flow_step(const Progress& progress) {
     if (!current_.flow) return {};
     const IterationRecord before = outcome_.records[best_record_];
-    const FlowFields& flow = *current_.flow;
+    const std::shared_ptr<const FlowFields> flow = current_.flow;
     MetricField<3> natural = natural_at_nodes_;
     const auto ask = [&](std::size_t i) {
       const Vec<3>& x = current_.mesh.points[i + 1];
@@ -170,7 +175,7 @@ class BodyLoop {
                        ask))
       return cancelled_error();
     Result<FlowCorrection> made =
-        flow_correction(current_.mesh, natural, flow, *study_.flow, of_flow_, natural_.h_min,
+        flow_correction(current_.mesh, natural, *flow, *study_.flow, of_flow_, flow_h_min_,
                         options_.threads, progress.portion(0.02, 0.1, "flow"));
     if (!made) return give_up(made.error());
     of_flow_ = std::move(made->field);
@@ -181,12 +186,12 @@ class BodyLoop {
     if (outcome_.records.size() == records) return {};  // given up
     if (Result<void> solved = solve_flow(progress.portion(0.7, 1)); !solved) {
       if (solved.error().code == Code::cancelled) return solved;
-      outcome_.notes.push_back("Flow: " + solved.error().message);
+      outcome_.notes.push_back(who() + solved.error().message);
       return {};
     }
     best_.flow = current_.flow;
     put_flow(outcome_.records.back());
-    tell_flow(before, *made);
+    tell_flow(before, *flow, *made);
     return {};
   }
 
@@ -219,9 +224,15 @@ class BodyLoop {
 
  private:
   Result<void> solve_flow(const Progress& progress) {
-    const std::shared_ptr<const MeshState> named = join({&current_}, {part_.name}, {groups()});
-    Result<FlowFields> flow = flow_through(named->mesh, flow_case_of(study_, part_.name),
-                                           study_.flow->method, options_.threads, progress);
+    const auto find = [&]() -> Result<FlowFields> {
+      if (field_)
+        return field_on(current_.mesh, *field_, study_.flow->method, across_, options_.threads,
+                        progress);
+      const std::shared_ptr<const MeshState> named = join({&current_}, {part_.name}, {groups()});
+      return flow_through(named->mesh, flow_case_of(study_, part_.name), study_.flow->method,
+                          options_.threads, progress);
+    };
+    Result<FlowFields> flow = find();
     if (!flow) return flow.error();
     current_.flow = std::make_shared<const FlowFields>(std::move(*flow));
     return {};
@@ -232,7 +243,11 @@ class BodyLoop {
     record.flow_pressure = current_.flow->highest_pressure();
   }
 
-  void tell_flow(const IterationRecord& before, const FlowCorrection& made) {
+  /// What notes of the flow begin with.
+  std::string who() const { return field_ ? "Solver's field: " : "Flow: "; }
+
+  void tell_flow(const IterationRecord& before, const FlowFields& old, const FlowCorrection& made) {
+    if (field_) return outcome_.notes.push_back(field_note(old, *current_.flow, made));
     const IterationRecord& after = outcome_.records.back();
     char text[240];
     std::snprintf(text, sizeof text,
@@ -245,7 +260,7 @@ class BodyLoop {
 
   /// The metric asked where the natural one is `natural`.
   Metric<3> sized(const Vec<3>& x, const Metric<3>& natural) const {
-    return sizing_.apply(x, of_flow_.apply(x, natural, natural_.h_min));
+    return sizing_.apply(x, of_flow_.apply(x, natural, flow_h_min_));
   }
 
   /// What the boundary layers asked by hand came to.
@@ -410,8 +425,11 @@ class BodyLoop {
 
   const Study& study_;
   const Part& part_;
+  const SolverField* field_;  ///< in place of a flow; may be null
+  const double across_;       ///< mm, of all parts
   const StudyOptions& options_;
   const BodySettings settings_;
+  double flow_h_min_ = 0;
   NaturalParams natural_;
   std::unique_ptr<ThicknessDetector> detector_;
   SizingField sizing_;
@@ -445,17 +463,22 @@ void look_for_overlaps(const Study& study, const std::vector<Part>& parts, const
 
 Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
                     const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
-                    Progress progress, IterationSink on_iteration) {
+                    Progress progress, IterationSink on_iteration,
+                    std::shared_ptr<const SolverField> field) {
   const auto start = Clock::now();
   if (Result<void> good = check_request(study, parts); !good) return good.error();
-  if (study.domain) return run_assembly(study, parts, meshers, progress, on_iteration);
+  // Before hours of meshing; the same for one mesh of all bodies.
+  if (Result<void> good = check_field(study, parts, field.get(), progress.portion(0, 0)); !good)
+    return good.error();
+  const SolverField* used = study.flow && study.flow->field ? field.get() : nullptr;
+  if (study.domain) return run_assembly(study, parts, meshers, progress, on_iteration, used);
 
   Outcome outcome;
   std::vector<BodyLoop> bodies;
   bodies.reserve(parts.size());
   std::vector<std::string> names;
   for (const Part& part : parts) {
-    bodies.emplace_back(study, part);
+    bodies.emplace_back(study, part, used, extent_of(parts));
     names.push_back(part.name);
   }
   const auto joined = [&](auto&& state_of) {
@@ -517,6 +540,10 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
     for (const BodyLoop& body : bodies) count_all += body.record_count();
     return count_all;
   };
+  const auto flowing = [&] {
+    return std::any_of(bodies.begin(), bodies.end(),
+                       [](const BodyLoop& b) { return b.has_flow_fields(); });
+  };
   for (int i = 0; flows && i <= rounds && !outcome.cancelled; ++i) {
     const std::size_t before = record_count();
     const auto since = Clock::now();
@@ -542,13 +569,11 @@ Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
       const IterationRecord all = join(last);
       outcome.records.back().flow_rate = all.flow_rate;
       outcome.records.back().flow_pressure = all.flow_pressure;
-      if (on_iteration && all.flow_rate > 0)
+      if (on_iteration && flowing())
         on_iteration(outcome.records.back(),
                      joined([](const BodyLoop& b) -> const MeshState& { return b.current(); }));
     }
-    const bool flowing = std::any_of(bodies.begin(), bodies.end(),
-                                     [](const BodyLoop& b) { return b.has_flow_fields(); });
-    if (!flowing || (i > 0 && !more)) break;  // there is nothing to correct by, or all gave up
+    if (!flowing() || (i > 0 && !more)) break;  // there is nothing to correct by, or all gave up
   }
 
   outcome.state = joined([](const BodyLoop& b) -> const MeshState& { return b.best(); });

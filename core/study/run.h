@@ -71,9 +71,12 @@ inline const std::string kFlowPhase = "flow";
 /// The main loop: first mesh, then metric -> adapt -> record until layers and nodes settle.
 /// Cancel after the first mesh exists returns an Outcome with `cancelled` set; before, an Error.
 /// `meshers` are tried in order for the first mesh of each body.
-/// Errors: usage (no body, n < 1), failed (no mesher could mesh a body), cancelled.
+/// `field` is what the study names as the field of another solver; null where it names none.
+/// Errors: usage (no body, n < 1), bad_input (a field that lies on no body), failed (no mesher
+/// could mesh a body), cancelled.
 Result<Outcome> run(const Study& study, const std::vector<Part>& parts,
                     const std::vector<std::shared_ptr<const VolumeMesher>>& meshers,
-                    Progress progress = {}, IterationSink on_iteration = {});
+                    Progress progress = {}, IterationSink on_iteration = {},
+                    std::shared_ptr<const SolverField> field = nullptr);
 
 }  // namespace lamella

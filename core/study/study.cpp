@@ -28,6 +28,20 @@ int role_rank(BodyRole role) {
   return role == BodyRole::insert ? 0 : role == BodyRole::mold ? 2 : 1;
 }
 
+std::vector<StudyInput*> sources_of(Study& study) {
+  std::vector<StudyInput*> sources;
+  for (StudyInput& input : study.inputs) sources.push_back(&input);
+  if (study.flow && study.flow->field) sources.push_back(&study.flow->field->source);
+  return sources;
+}
+
+std::vector<const StudyInput*> sources_of(const Study& study) {
+  std::vector<const StudyInput*> sources;
+  for (const StudyInput& input : study.inputs) sources.push_back(&input);
+  if (study.flow && study.flow->field) sources.push_back(&study.flow->field->source);
+  return sources;
+}
+
 BodySettings settings_of(const Study& study, const std::string& name) {
   const auto it = std::find_if(study.bodies.begin(), study.bodies.end(),
                                [&](const BodySettings& body) { return body.name == name; });

@@ -12,6 +12,7 @@
 #include "core/sizing/sizing_object.h"
 #include "core/study/flow_entry.h"
 #include "core/study/group.h"
+#include "core/study/study_input.h"
 #include "core/study/zone_entry.h"
 
 namespace lamella {
@@ -90,17 +91,6 @@ struct StudyOptions {
   Capture capture = Capture::distance;        ///< of fuzzy interfaces
 };
 
-/// A STEP or STL file, and what it held when it was read.
-struct StudyInput {
-  std::string file;       ///< relative to the study's folder, or absolute
-  double unit = 1;        ///< mm per unit of an STL, which names none
-  std::string sha256{};   ///< of its content; empty: not known
-  std::uint64_t bytes{};  ///< its size, where the hash is known
-  std::string entry{};    ///< of the copy within the project file; empty: none
-
-  bool operator==(const StudyInput&) const = default;
-};
-
 /// A plane through which the window cuts the model open: what its normal points to is hidden.
 struct CutPlane {
   std::string name;
@@ -122,11 +112,14 @@ struct Study {
   StudyOptions options;
   std::vector<SizingObject> sizing;   ///< on top of the natural metric, in this order
   std::vector<BoundaryGroup> groups;  ///< named parts of the boundary
-  std::optional<StudyFlow> flow;      ///< unset: no flow is solved
+  std::optional<StudyFlow> flow;      ///< unset: nothing is corrected by a flow
   std::vector<CutPlane> cuts;         ///< for the eye only
   bool embed_inputs = false;          ///< a project file holds copies of the inputs
 };
 
+/// The files that the study reads: its inputs, and the result of another solver behind them.
+std::vector<StudyInput*> sources_of(Study& study);
+std::vector<const StudyInput*> sources_of(const Study& study);
 /// The settings of the part called `name`: its entry, or the defaults of BodySettings.
 BodySettings settings_of(const Study& study, const std::string& name);
 /// The sizing objects that apply to the part called `name`.

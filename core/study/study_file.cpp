@@ -212,13 +212,7 @@ SizingObject read_sizing(const Json& json, std::size_t index, std::string& compl
   return object;
 }
 
-StudyInput read_input(const Json& json, std::size_t index, std::string& complaint) {
-  StudyInput input;
-  if (json.is_string()) {
-    input.file = json.get<std::string>();
-    return input;
-  }
-  Members m(json, "inputs[" + std::to_string(index) + "]", complaint);
+void read_source(Members& m, StudyInput& input) {
   m.text("file", input.file);
   if (input.file.empty()) m.complain("file", "is needed");
   m.number("unit", input.unit, false);
@@ -230,6 +224,16 @@ StudyInput read_input(const Json& json, std::size_t index, std::string& complain
     m.complain("sha256", "must be 64 hexadecimal digits");
   m.integer("bytes", input.bytes, 0);
   m.text("entry", input.entry);
+}
+
+StudyInput read_input(const Json& json, std::size_t index, std::string& complaint) {
+  StudyInput input;
+  if (json.is_string()) {
+    input.file = json.get<std::string>();
+    return input;
+  }
+  Members m(json, "inputs[" + std::to_string(index) + "]", complaint);
+  read_source(m, input);
   m.finish();
   return input;
 }
@@ -270,13 +274,25 @@ BoundaryGroup read_group(const Json& json, std::size_t index, std::string& compl
 StudyFlow read_flow(const Json& json, std::string& complaint) {
   StudyFlow flow;
   Members m(json, "flow", complaint);
-  flow.method = one_of(m, "method", kFlowMethods, flow.method, flow_method_name);
+  if (m.has("field")) {
+    StudyField field;
+    Members f(m.at("field"), "flow.field", complaint);
+    f.text("name", field.name);
+    if (field.name.empty()) f.complain("name", "is needed");
+    read_source(f, field.source);
+    f.finish();
+    flow.field = std::move(field);
+    flow.method = one_of(m, "method", kFieldMethods, FlowMethod::field, flow_method_name);
+  } else {
+    flow.method = one_of(m, "method", kFlowMethods, flow.method, flow_method_name);
+  }
   m.number("strength", flow.strength, false);
   m.number("beta", flow.beta, false);
   m.number("growth", flow.growth, false);
   if (!(flow.growth > 1)) m.complain("growth", "must be above 1");
   m.integer("rounds", flow.rounds, 0);
   m.number("viscosity", flow.viscosity, false);
+  m.number("h_min", flow.h_min);
   m.finish();
   return flow;
 }
@@ -391,7 +407,22 @@ Json json_of(const StudyInput& input) {
     json["bytes"] = input.bytes;
   }
   if (!input.entry.empty()) json["entry"] = input.entry;
-  return json.size() == 1 ? Json(input.file) : json;
+  return json;
+}
+
+Json json_of(const StudyFlow& flow) {
+  Json json = {{"method", flow_method_name(flow.method)},
+               {"strength", flow.strength},
+               {"beta", flow.beta},
+               {"growth", flow.growth},
+               {"rounds", flow.rounds},
+               {"viscosity", flow.viscosity}};
+  if (flow.h_min) json["h_min"] = *flow.h_min;
+  if (flow.field) {
+    json["field"] = json_of(flow.field->source);
+    json["field"]["name"] = flow.field->name;
+  }
+  return json;
 }
 
 }  // namespace
@@ -403,7 +434,10 @@ std::string study_to_json(const Study& study) {
   json["name"] = study.name;
   json["unit"] = "mm";
   json["inputs"] = Json::array();
-  for (const StudyInput& input : study.inputs) json["inputs"].push_back(json_of(input));
+  for (const StudyInput& input : study.inputs) {
+    Json in = json_of(input);
+    json["inputs"].push_back(in.size() == 1 ? Json(input.file) : std::move(in));
+  }
   if (study.embed_inputs) json["embed_inputs"] = true;
   if (!study.left_out.empty()) json["left_out"] = study.left_out;
   json["bodies"] = Json::array();
@@ -445,13 +479,7 @@ std::string study_to_json(const Study& study) {
   }
   for (const SizingObject& object : study.sizing) json["sizing"].push_back(json_of(object));
   for (const BoundaryGroup& group : study.groups) json["groups"].push_back(json_of(group));
-  if (const auto& flow = study.flow)
-    json["flow"] = {{"method", flow_method_name(flow->method)},
-                    {"strength", flow->strength},
-                    {"beta", flow->beta},
-                    {"growth", flow->growth},
-                    {"rounds", flow->rounds},
-                    {"viscosity", flow->viscosity}};
+  if (study.flow) json["flow"] = json_of(*study.flow);
   for (const CutPlane& cut : study.cuts)
     json["cuts"].push_back({{"name", cut.name},
                             {"origin", json_of(cut.origin)},
@@ -467,7 +495,7 @@ std::string mesh_key(Study study) {
   study.options.memory.reset();
   study.cuts.clear();
   // A file is what it holds, not where it lies.
-  for (StudyInput& input : study.inputs) input = {"", input.unit, input.sha256, 0, ""};
+  for (StudyInput* input : sources_of(study)) *input = {"", input->unit, input->sha256, 0, ""};
   for (BodySettings& body : study.bodies) {
     body.visible = true;
     body.color.reset();

@@ -1353,6 +1353,128 @@ rendu uniforme sur les éléments</translation>
         <source>Velocity and curvature</source>
         <translation>Vitesse et courbure</translation>
     </message>
+    <message>
+        <source>Gradient of the field</source>
+        <translation>Gradient du champ</translation>
+    </message>
+    <message>
+        <source>Field as an indicator</source>
+        <translation>Champ comme indicateur</translation>
+    </message>
+    <message>
+        <source>The correction asks for no less</source>
+        <translation>La correction ne demande rien de plus petit</translation>
+    </message>
+    <message>
+        <source>of the body</source>
+        <translation>celle du corps</translation>
+    </message>
+    <message>
+        <source>Smallest size</source>
+        <translation>Taille minimale</translation>
+    </message>
+    <message>
+        <source>Flow, solved here</source>
+        <translation>Écoulement, résolu ici</translation>
+    </message>
+    <message>
+        <source>Result of another solver</source>
+        <translation>Résultat d&apos;un autre solveur</translation>
+    </message>
+    <message>
+        <source>A Stokes flow between gates and vents, or what Moldflow, OpenFOAM
+or any other solver has found, on whatever mesh</source>
+        <translation>Un écoulement de Stokes entre seuils et évents, ou ce que Moldflow, OpenFOAM
+ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
+    </message>
+    <message>
+        <source>From</source>
+        <translation>D&apos;après</translation>
+    </message>
+    <message>
+        <source>File</source>
+        <translation>Fichier</translation>
+    </message>
+    <message>
+        <source>Numbers and vectors that the file has, at its points or cells</source>
+        <translation>Nombres et vecteurs du fichier, à ses points ou dans ses cellules</translation>
+    </message>
+    <message>
+        <source>Unit of length of the file</source>
+        <translation>Unité de longueur du fichier</translation>
+    </message>
+    <message>
+        <source>Unit of length of the file, which names none</source>
+        <translation>Unité de longueur du fichier, qui n&apos;en nomme aucune</translation>
+    </message>
+    <message>
+        <source>Field, unit</source>
+        <translation>Champ, unité</translation>
+    </message>
+    <message>
+        <source>Field %1</source>
+        <translation>Champ %1</translation>
+    </message>
+    <message>
+        <source>Unit of the result</source>
+        <translation>Unité du résultat</translation>
+    </message>
+    <message>
+        <source>Smallest size for the flow</source>
+        <translation>Taille minimale pour l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>What the correction comes to is known once the field is on the mesh.</source>
+        <translation>Ce que donne la correction est connu une fois le champ posé sur le maillage.</translation>
+    </message>
+    <message>
+        <source>Laying the field on the mesh…</source>
+        <translation>Pose du champ sur le maillage…</translation>
+    </message>
+    <message>
+        <source>nodes of the result</source>
+        <translation>nœuds du résultat</translation>
+    </message>
+    <message>
+        <source>change along an edge, mean</source>
+        <translation>variation le long d&apos;une arête, moyenne</translation>
+    </message>
+    <message>
+        <source>indicator, mean</source>
+        <translation>indicateur, moyenne</translation>
+    </message>
+    <message>
+        <source>one iteration before</source>
+        <translation>une itération avant</translation>
+    </message>
+    <message>
+        <source>The file is read when the mesh is run or the field is shown.</source>
+        <translation>Le fichier est lu au lancement du calcul, ou quand le champ est affiché.</translation>
+    </message>
+    <message>
+        <source>Run: the mesh that has settled is then corrected by the field.</source>
+        <translation>Lancez le calcul : le maillage stabilisé est ensuite corrigé par le champ.</translation>
+    </message>
+    <message>
+        <source>The field is not on this mesh.</source>
+        <translation>Le champ n&apos;est pas sur ce maillage.</translation>
+    </message>
+    <message>
+        <source>extent of the result</source>
+        <translation>étendue du résultat</translation>
+    </message>
+    <message>
+        <source>extent of the bodies</source>
+        <translation>étendue des corps</translation>
+    </message>
+    <message>
+        <source>nodes beside the result</source>
+        <translation>nœuds hors du résultat</translation>
+    </message>
+    <message>
+        <source>%L1, up to %2</source>
+        <translation>%L1, jusqu&apos;à %2</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Forecaster</name>
@@ -1383,6 +1505,10 @@ rendu uniforme sur les éléments</translation>
     <message>
         <source>The flow is solved %1 times; before it: %L2 nodes.</source>
         <translation>L’écoulement est résolu %1 fois ; avant lui : %L2 nœuds.</translation>
+    </message>
+    <message>
+        <source>Before the correction by the solver&apos;s field: %L1 nodes.</source>
+        <translation>Avant la correction par le champ du solveur : %L1 nœuds.</translation>
     </message>
 </context>
 <context>
@@ -1615,6 +1741,18 @@ rendu uniforme sur les éléments</translation>
     <message>
         <source>Smallest size asked</source>
         <translation>Plus petite taille demandée</translation>
+    </message>
+    <message>
+        <source>Solver&apos;s field</source>
+        <translation>Champ d&apos;un solveur</translation>
+    </message>
+    <message>
+        <source>Indicator</source>
+        <translation>Indicateur</translation>
+    </message>
+    <message>
+        <source>known once another solver&apos;s result is read</source>
+        <translation>connu une fois lu le résultat d&apos;un autre solveur</translation>
     </message>
 </context>
 <context>
@@ -2044,6 +2182,54 @@ rendu uniforme sur les éléments</translation>
     <message>
         <source>Studies and parts (*.lamella *.json %1);;Meshes (%2);;All files (*)</source>
         <translation>Études et pièces (*.lamella *.json %1);;Maillages (%2);;Tous les fichiers (*)</translation>
+    </message>
+    <message>
+        <source>&amp;Solve the flow</source>
+        <translation>&amp;Résoudre l&apos;écoulement</translation>
+    </message>
+    <message>
+        <source>Lay the field of the other solver on the mesh that is shown</source>
+        <translation>Poser le champ de l&apos;autre solveur sur le maillage affiché</translation>
+    </message>
+    <message>
+        <source>Solve the flow between gates and vents through the mesh that is shown</source>
+        <translation>Résoudre l&apos;écoulement entre seuils et évents à travers le maillage affiché</translation>
+    </message>
+    <message>
+        <source>Laying the field on the mesh…</source>
+        <translation>Pose du champ sur le maillage…</translation>
+    </message>
+    <message>
+        <source>Result of another solver</source>
+        <translation>Résultat d&apos;un autre solveur</translation>
+    </message>
+    <message>
+        <source>Results (*.vtu *.vtk %1);;All files (*)</source>
+        <translation>Résultats (*.vtu *.vtk %1);;Tous les fichiers (*)</translation>
+    </message>
+    <message>
+        <source>What is it?</source>
+        <translation>De quoi s&apos;agit-il ?</translation>
+    </message>
+    <message>
+        <source>“%1” may be the result of another solver.</source>
+        <translation>« %1 » peut être le résultat d&apos;un autre solveur.</translation>
+    </message>
+    <message>
+        <source>Its fields can show where the mesh of what is open must be finer.</source>
+        <translation>Ses champs peuvent montrer où le maillage de ce qui est ouvert doit être plus fin.</translation>
+    </message>
+    <message>
+        <source>Correct by its fields</source>
+        <translation>Corriger par ses champs</translation>
+    </message>
+    <message>
+        <source>Open as a mesh</source>
+        <translation>Ouvrir comme maillage</translation>
+    </message>
+    <message>
+        <source>&amp;Show the field</source>
+        <translation>&amp;Afficher le champ</translation>
     </message>
 </context>
 <context>
@@ -2822,6 +3008,26 @@ Les barres croissent comme le logarithme du nombre</translation>
         <source>Flow: %1 iterations, %2 mm³/s, %3 s</source>
         <translation>Écoulement : %1 itérations, %2 mm³/s, %3 s</translation>
     </message>
+    <message>
+        <source>Reading the result %1</source>
+        <translation>Lecture du résultat %1</translation>
+    </message>
+    <message>
+        <source>Correct by the result %1</source>
+        <translation>Corriger par le résultat %1</translation>
+    </message>
+    <message>
+        <source>Lengths in %1 are taken for %2.</source>
+        <translation>Les longueurs de %1 sont prises pour des %2.</translation>
+    </message>
+    <message>
+        <source>The result is then %1 across, and the bodies are %2. If that is wrong, choose its unit in the flow panel.</source>
+        <translation>Le résultat mesure alors %1, et les corps %2. Si c&apos;est faux, choisissez son unité dans le panneau de l&apos;écoulement.</translation>
+    </message>
+    <message>
+        <source>Laying the solver&apos;s field on %L1 nodes</source>
+        <translation>Pose du champ du solveur sur %L1 nœuds</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::ShortcutSheet</name>
@@ -3286,6 +3492,10 @@ Les propriétés du maillage ont ses réglages.</translation>
     <message>
         <source>Size asked</source>
         <translation>Taille demandée</translation>
+    </message>
+    <message>
+        <source>Solver&apos;s field</source>
+        <translation>Champ d&apos;un solveur</translation>
     </message>
 </context>
 <context>

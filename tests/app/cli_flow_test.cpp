@@ -1,10 +1,9 @@
-#include <fstream>
-
 #include "core/io/medit.h"
 #include "core/io/msh.h"
 #include "core/metric/metric.h"
 #include "tests/support/cli_fixture.h"
 #include "tests/support/flow_meshes.h"
+#include "tests/support/foreign_result.h"
 
 namespace lamella {
 namespace {
@@ -91,43 +90,13 @@ TEST_F(CliFlow, AFieldOfTheFileCorrectsWithoutAGate) {
   EXPECT_NE(err.find("pressure"), std::string::npos) << err;
 }
 
-/// What another solver may write: hexahedra, numbers of 32 bits, vectors of cells, meters.
+/// Of another solver on the channel.
 void write_foreign(const std::filesystem::path& file, int cells, double unit) {
-  const int nx = 3 * cells, m = cells + 1;
-  std::ofstream to(file);
-  to << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\">"
-     << "<UnstructuredGrid><Piece NumberOfPoints=\"" << (nx + 1) * m * m << "\" NumberOfCells=\""
-     << nx * cells * cells << "\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">";
-  for (int i = 0; i <= nx; ++i)
-    for (int j = 0; j < m; ++j)
-      for (int k = 0; k < m; ++k)
-        to << unit * i / cells << ' ' << unit * j / cells << ' ' << unit * k / cells << '\n';
-  to << "</DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\">";
-  const auto at = [&](int i, int j, int k) { return (i * m + j) * m + k; };
-  std::string centers, speeds;
-  for (int i = 0; i < nx; ++i)
-    for (int j = 0; j < cells; ++j)
-      for (int k = 0; k < cells; ++k) {
-        for (const auto& [a, b, c] : std::vector<std::array<int, 3>>{{0, 0, 0},
-                                                                     {1, 0, 0},
-                                                                     {1, 1, 0},
-                                                                     {0, 1, 0},
-                                                                     {0, 0, 1},
-                                                                     {1, 0, 1},
-                                                                     {1, 1, 1},
-                                                                     {0, 1, 1}})
-          to << at(i + a, j + b, k + c) << ' ';
-        const double y = (j + 0.5) / cells;
-        centers += std::to_string((i + 0.5) / cells) + " ";
-        speeds += std::to_string(y * (1 - y)) + " 0 0 ";
-      }
-  to << "</DataArray><DataArray type=\"Int32\" Name=\"offsets\">";
-  for (int c = 1; c <= nx * cells * cells; ++c) to << 8 * c << ' ';
-  to << "</DataArray><DataArray type=\"UInt8\" Name=\"types\">";
-  for (int c = 0; c < nx * cells * cells; ++c) to << "12 ";
-  to << "</DataArray></Cells><CellData><DataArray type=\"Float32\" Name=\"T\">" << centers
-     << "</DataArray><DataArray type=\"Float32\" Name=\"U\" NumberOfComponents=\"3\">" << speeds
-     << "</DataArray></CellData></Piece></UnstructuredGrid></VTKFile>\n";
+  test::ForeignBox box;
+  box.cells = {3 * cells, cells, cells};
+  box.high = {3, 1, 1};
+  box.unit = unit;
+  test::write_result(file, box);
 }
 
 TEST_F(CliFlow, AFieldOfAnotherMeshCorrectsThisOne) {

@@ -211,7 +211,8 @@ Services with_million_meshes(Services services) {
   std::vector<std::shared_ptr<const MeshState>> states;
   for (int k = 0; k < 3; ++k) states.push_back(million(true));
   services.run = [states](const Study&, const std::vector<Part>&, const auto&,
-                          const Progress& progress, const IterationSink& sink) -> Result<Outcome> {
+                          const Progress& progress, const IterationSink& sink,
+                          const auto&) -> Result<Outcome> {
     Outcome outcome;
     for (int k = 0; k < 3; ++k) {
       IterationRecord record;

@@ -49,6 +49,7 @@ struct FakeServices {
   std::atomic<int> exports = 0;
   ExportOptions export_options{};  // of the last one
   std::atomic<bool> mesh_is_damaged = false;
+  MeshContent result{};  // of another solver, in every file
 
   ui::Services make() {
     ui::Services services;
@@ -60,7 +61,8 @@ struct FakeServices {
       return std::vector<std::shared_ptr<const VolumeMesher>>{};
     };
     services.run = [this](const Study& study, const std::vector<Part>& parts, const auto&,
-                          const Progress& progress, const IterationSink& sink) -> Result<Outcome> {
+                          const Progress& progress, const IterationSink& sink,
+                          const auto&) -> Result<Outcome> {
       Outcome outcome;
       const int last = study.options.iterations;
       for (int k = 0; k <= last; ++k) {
@@ -95,6 +97,11 @@ struct FakeServices {
       body.layers = outcome.records.back().layers;
       outcome.bodies.push_back(body);
       return outcome;
+    };
+    services.read_result = [this](const std::filesystem::path& file,
+                                  const Progress&) -> Result<MeshContent> {
+      if (!std::filesystem::exists(file)) return Error{Code::io, "There is no such file.", ""};
+      return result;
     };
     services.formats.add(own_formats());
     services.export_mesh = [this](const std::filesystem::path& file, const MeshState&, const Study&,

@@ -93,7 +93,7 @@ class MultidomainTest : public testing::Test {
   Services services() {
     Services made = fake_.make();
     made.run = [](const Study& study, const auto&, const auto&, const Progress&,
-                  const IterationSink& sink) -> Result<Outcome> {
+                  const IterationSink& sink, const auto&) -> Result<Outcome> {
       Outcome outcome;
       outcome.state = split_state(study.bodies);
       outcome.converged = true;

@@ -3,6 +3,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QHBoxLayout>
+#include <QPushButton>
 #include <QSlider>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -12,6 +13,7 @@
 #include "ui/panels/form.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 #include "ui/views/plot.h"
 
 namespace lamella::ui {
@@ -35,12 +37,16 @@ QString method_title(FlowMethod method) {
       return FlowPanel::tr("Strain rate");
     case FlowMethod::combined:
       return FlowPanel::tr("Velocity and curvature");
+    case FlowMethod::field:
+      return FlowPanel::tr("Gradient of the field");
     case FlowMethod::direction:
       return FlowPanel::tr("Change of direction");
     case FlowMethod::residual:
       return FlowPanel::tr("Residual");
     case FlowMethod::directional:
       return FlowPanel::tr("Directional residual");
+    case FlowMethod::indicator:
+      return FlowPanel::tr("Field as an indicator");
   }
   return {};
 }
@@ -71,6 +77,8 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
   }
   tools->addStretch(1);
   middle->addLayout(tools);
+  source_ = make_source();
+  middle->addWidget(source_);
   found_ = styled_label({}, "soft");
   found_->setObjectName("flow_found");
   found_->setTextFormat(Qt::RichText);
@@ -88,8 +96,9 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
   wait_.setInterval(250);
   connect(&wait_, &QTimer::timeout, this, &FlowPanel::count);
   connect(&worker_, &Worker::finished, this, &FlowPanel::refresh);
-  for (const auto signal : {&Session::study_changed, &Session::shown_changed,
-                            &Session::activity_changed, &Session::parts_changed})
+  for (const auto signal :
+       {&Session::study_changed, &Session::shown_changed, &Session::activity_changed,
+        &Session::parts_changed, &Session::result_read})
     connect(&session, signal, this, &FlowPanel::refresh);
   connect_boxes();
   refresh();
@@ -109,10 +118,15 @@ QWidget* FlowPanel::make_settings() {
   layout->addWidget(correct_);
   auto* form = new Form;
   form->setVerticalSpacing(4);
+  from_ = new QComboBox;
+  from_->setObjectName("flow_from");
+  from_->addItems({tr("Flow, solved here"), tr("Result of another solver")});
+  from_->setToolTip(
+      tr("A Stokes flow between gates and vents, or what Moldflow, OpenFOAM\n"
+         "or any other solver has found, on whatever mesh"));
+  form->add(tr("From"), from_);
   method_ = new QComboBox;
   method_->setObjectName("flow_method");
-  for (const FlowMethod method : kFlowMethods)
-    method_->addItem(method_title(method), static_cast<int>(method));
   method_->setToolTip(
       tr("What the mesh is to follow: the gradient of a field, or an indicator\n"
          "that is made even over the elements"));
@@ -131,6 +145,10 @@ QWidget* FlowPanel::make_settings() {
   row->addWidget(weight_text_);
   form->add(tr("Strength"), weight);
   weight_title_ = qobject_cast<QLabel*>(form->labelForField(weight));
+  expected_ = styled_label({}, "soft");
+  expected_->setObjectName("flow_expected");
+  expected_->setWordWrap(true);
+  form->addRow(expected_);
   growth_ = number_box(1.05, 20, 0.1, "flow_growth",
                        tr("Elements that the correction may ask for, over those without it"));
   growth_->setPrefix("× ");
@@ -138,16 +156,111 @@ QWidget* FlowPanel::make_settings() {
   rounds_ = integer_box(0, 20, "flow_rounds",
                         tr("Rounds of flow and correction; 0: the flow is solved alone"));
   form->add(tr("Rounds"), rounds_);
+  h_min_ = length_box("flow_h_min", tr("The correction asks for no less"));
+  h_min_->set_automatic(tr("of the body"), 0.1);
+  form->add(tr("Smallest size"), h_min_);
   layout->addLayout(form);
-  expected_ = styled_label({}, "soft");
-  expected_->setObjectName("flow_expected");
-  expected_->setWordWrap(true);
-  layout->addWidget(expected_);
   layout->addStretch(1);
   return box;
 }
 
+QWidget* FlowPanel::make_source() {
+  auto* source = new QWidget;
+  auto* form = new Form;
+  form->setContentsMargins(0, 0, 0, 0);
+  form->setVerticalSpacing(4);
+  source->setLayout(form);
+  file_ = new QPushButton;
+  file_->setObjectName("flow_file");
+  form->add(tr("File"), file_);
+  auto* row = new QWidget;
+  auto* boxes = new QHBoxLayout(row);
+  boxes->setContentsMargins(0, 0, 0, 0);
+  field_ = new QComboBox;
+  field_->setObjectName("flow_field");
+  field_->setToolTip(tr("Numbers and vectors that the file has, at its points or cells"));
+  boxes->addWidget(field_, 1);
+  unit_ = new QComboBox;
+  unit_->setObjectName("flow_unit");
+  unit_->setAccessibleName(tr("Unit of length of the file"));
+  unit_->setToolTip(tr("Unit of length of the file, which names none"));
+  for (const FileUnit& unit : kFileUnits)
+    unit_->addItem(QString::fromUtf8(unit.name.data(), static_cast<int>(unit.name.size())),
+                   unit.mm);
+  boxes->addWidget(unit_);
+  form->add(tr("Field, unit"), row);
+  return source;
+}
+
+void FlowPanel::connect_source() {
+  connect(from_, &QComboBox::activated, this, [this](int index) {
+    const bool of_solver = session_.study().flow && session_.study().flow->field;
+    if (index == 1 && !of_solver) Q_EMIT result_asked();
+    if (index == 0 && of_solver)
+      edit(tr("Correct by the flow"), [](StudyFlow& flow) {
+        flow.field.reset();
+        flow.method = StudyFlow{}.method;
+      });
+    refresh();  // where no file was chosen
+  });
+  connect(file_, &QPushButton::clicked, this, &FlowPanel::result_asked);
+  // What is shown on the mesh follows.
+  connect(field_, &QComboBox::activated, this, [this] {
+    const std::string name = field_->currentText().toStdString();
+    const int components = field_->currentData().toInt();
+    edit(tr("Field %1").arg(field_->currentText()), [&](StudyFlow& flow) {
+      flow.field->name = name;
+      if (!suits_field(flow.method, components)) flow.method = FlowMethod::field;
+    });
+    session_.solve_flow();
+  });
+  connect(unit_, &QComboBox::activated, this, [this] {
+    const double unit = unit_->currentData().toDouble();
+    edit(tr("Unit of the result"), [unit](StudyFlow& flow) { flow.field->source.unit = unit; });
+    session_.solve_flow();
+  });
+  connect(h_min_, &QDoubleSpinBox::valueChanged, this, [this] {
+    edit(tr("Smallest size for the flow"),
+         [this](StudyFlow& flow) { flow.h_min = h_min_->length(); });
+  });
+}
+
+void FlowPanel::show_source(const StudyFlow& flow) {
+  const bool of_solver = flow.field.has_value();
+  from_->setCurrentIndex(of_solver ? 1 : 0);
+  source_->setVisible(of_solver);
+  const auto result = session_.result();
+  int components = 0;  // not known
+  if (of_solver) {
+    const QString path = QString::fromStdString(flow.field->source.file);
+    file_->setText(file_->fontMetrics().elidedText(path.section('/', -1), Qt::ElideMiddle, 150));
+    file_->setToolTip(path);
+    field_->clear();
+    if (result)
+      for (const NodeField& field : result->content.of_nodes)
+        field_->addItem(QString::fromStdString(field.name), field.components);
+    const QString name = QString::fromStdString(flow.field->name);
+    if (field_->findText(name) < 0) field_->addItem(name, 0);
+    field_->setCurrentText(name);
+    components = field_->currentData().toInt();
+    unit_->setCurrentIndex(unit_->findData(flow.field->source.unit));
+  }
+  method_->clear();
+  const auto offer = [&](FlowMethod method) {
+    method_->addItem(method_title(method), static_cast<int>(method));
+  };
+  if (of_solver)
+    for (const FlowMethod method : kFieldMethods) {
+      const bool suits = components == 0 ? suits_field(method, 1) || suits_field(method, 3)
+                                         : suits_field(method, components);
+      if (suits) offer(method);
+    }
+  else
+    for (const FlowMethod method : kFlowMethods) offer(method);
+}
+
 void FlowPanel::connect_boxes() {
+  connect_source();
   connect(correct_, &QCheckBox::clicked, this, [this](bool on) {
     Study study = session_.study();
     study.flow = on ? std::optional(StudyFlow{}) : std::nullopt;
@@ -158,6 +271,8 @@ void FlowPanel::connect_boxes() {
     const auto method = static_cast<FlowMethod>(method_->currentData().toInt());
     edit(tr("Correct by %1").arg(method_title(method)),
          [method](StudyFlow& flow) { flow.method = method; });
+    // The indicator on the mesh is that of the method; a flow is not solved again for it.
+    if (session_.study().flow && session_.study().flow->field) session_.solve_flow();
   });
   connect(weight_, &QSlider::sliderPressed, this, [this] { merge_ = session_.new_merge(); });
   connect(weight_, &QSlider::valueChanged, this, [this](int position) {
@@ -196,15 +311,18 @@ void FlowPanel::refresh() {
   const double weight = gradient ? flow.strength : 1 / flow.beta;
   {
     const QSignalBlocker blocks[] = {QSignalBlocker(weight_), QSignalBlocker(growth_),
-                                     QSignalBlocker(rounds_)};
+                                     QSignalBlocker(rounds_), QSignalBlocker(h_min_)};
     correct_->setChecked(asked.has_value());
+    show_source(flow);
+    h_min_->set_length(flow.h_min);
     method_->setCurrentIndex(method_->findData(static_cast<int>(flow.method)));
     weight_->setValue(position_of(weight));
     growth_->setValue(flow.growth);
     rounds_->setValue(flow.rounds);
   }
   correct_->setEnabled(session_.has_bodies());
-  for (QWidget* box : std::initializer_list<QWidget*>{method_, weight_, growth_, rounds_})
+  for (QWidget* box : std::initializer_list<QWidget*>{from_, file_, field_, unit_, method_, weight_,
+                                                      growth_, rounds_, h_min_})
     box->setEnabled(asked.has_value());
   weight_title_->setText(gradient ? tr("Strength") : tr("Mean error"));
   weight_->setToolTip(gradient ? tr("To the right the flow asks for smaller sizes")
@@ -214,7 +332,8 @@ void FlowPanel::refresh() {
   const auto state = session_.shown_state();
   // A run needs the processors.
   if (session_.activity() == Activity::running) worker_.cancel();
-  if (asked && state && state->flow && !is_previewed() && session_.activity() == Activity::idle)
+  if (asked && state && state->flow && is_of(*state->flow, *asked) && !is_previewed() &&
+      session_.activity() == Activity::idle)
     wait_.start();
   expected_->setText(preview_text());
   show_flow();
@@ -232,7 +351,10 @@ std::optional<FlowPreview> FlowPanel::preview() const {
 QString FlowPanel::preview_text() const {
   const auto state = session_.shown_state();
   if (!session_.study().flow) return {};
-  if (!state || !state->flow) return tr("Solve the flow to see what the correction comes to.");
+  const bool of_solver = session_.study().flow->field.has_value();
+  if (!state || !state->flow || !is_of(*state->flow, *session_.study().flow))
+    return of_solver ? tr("What the correction comes to is known once the field is on the mesh.")
+                     : tr("Solve the flow to see what the correction comes to.");
   if (!is_previewed()) return tr("Counting…");
   if (!preview_) return no_preview_;
   return tr("About %L1 nodes instead of %L2, × %3.")
@@ -262,6 +384,46 @@ void FlowPanel::count() {
   });
 }
 
+QString FlowPanel::result_text() const {
+  if (session_.activity() == Activity::flowing) return tr("Laying the field on the mesh…");
+  const StudyField& asked = *session_.study().flow->field;
+  const auto result = session_.result();
+  QString html;
+  const auto line = [&](const QString& what, const QString& value) {
+    html += "<tr>" + cell(what, false) + cell(value, true) + "</tr>";
+  };
+  if (result) {
+    const double extent = session_.extent();
+    line(tr("nodes of the result"), QString("%L1").arg(result->content.mesh.node_count()));
+    line(tr("extent of the result"), units::length(result->across * asked.source.unit));
+    line(tr("extent of the bodies"), units::length(extent));
+  }
+  const auto state = session_.shown_state();
+  const FlowFields* flow = state ? state->flow.get() : nullptr;
+  const bool laid = flow && is_of(*flow, *session_.study().flow);
+  if (laid) {
+    const bool step = adds_gradient(session_.study().flow->method);
+    line(step ? tr("change along an edge, mean") : tr("indicator, mean"),
+         QString::number(flow->mean_indicator(), 'g', 3));
+    if (flow->outside > 0)
+      line(tr("nodes beside the result"),
+           tr("%L1, up to %2").arg(flow->outside).arg(units::length(flow->farthest, 3)));
+    const int before = session_.shown() - 1;
+    if (before >= 0)
+      if (const auto& old = session_.iterations()[std::size_t(before)].state;
+          old && old->flow && is_of(*old->flow, *session_.study().flow))
+        line(tr("one iteration before"), QString::number(old->flow->mean_indicator(), 'g', 3));
+  }
+  html = QString("<table cellspacing='0'>%1</table>").arg(html);
+  if (!result)
+    html += "<p>" + tr("The file is read when the mesh is run or the field is shown.") + "</p>";
+  else if (!laid && !state)
+    html += "<p>" + tr("Run: the mesh that has settled is then corrected by the field.") + "</p>";
+  else if (!laid)
+    html += "<p>" + tr("The field is not on this mesh.") + "</p>";
+  return html;
+}
+
 void FlowPanel::show_flow() {
   const auto state = session_.shown_state();
   const FlowFields* flow = state ? state->flow.get() : nullptr;
@@ -271,7 +433,10 @@ void FlowPanel::show_flow() {
     if (flow) series.values = flow->residuals;
     residuals_->set_series({series});
   }
-  if (!flow) {
+  const bool of_solver = session_.study().flow && session_.study().flow->field;
+  residuals_->setVisible(!of_solver);
+  if (of_solver) return found_->setText(result_text());
+  if (!flow || flow->components > 0) {
     found_->setText(
         session_.activity() == Activity::flowing ? tr("Solving… Shift+F5 cancels.")
         : !state ? tr("Make a gate and a vent of groups of faces, and run: the flow between them "

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "core/flow/solver_field.h"
 #include "core/study/domain.h"
 #include "core/study/request.h"
 
@@ -128,7 +129,15 @@ std::string flow_options(const Study& study) {
   if (!study.flow) return {};
   const StudyFlow& flow = *study.flow;
   const StudyFlow usual;
-  std::string text = " --flow " + std::string(flow_method_name(flow.method));
+  std::string text = " --flow ";
+  const std::string method(flow_method_name(flow.method));
+  text += flow.field ? quoted(method + ':' + flow.field->name) : method;
+  if (flow.field) {
+    text += " --flow-field " + quoted(flow.field->source.file);
+    for (const FileUnit& unit : kFileUnits)
+      if (unit.mm == flow.field->source.unit && unit.mm != 1)
+        text += " --flow-field-unit " + std::string(unit.name);
+  }
   std::string before;
   for (const BoundaryGroup& group : study.groups) {
     if (group.name == before) continue;
@@ -143,6 +152,7 @@ std::string flow_options(const Study& study) {
   if (flow.strength != usual.strength) text += " --flow-strength " + number(flow.strength);
   if (flow.beta != usual.beta) text += " --flow-beta " + number(flow.beta);
   if (flow.growth != usual.growth) text += " --flow-growth " + number(flow.growth);
+  if (flow.h_min) text += " --flow-h-min " + number(*flow.h_min);
   if (flow.rounds != usual.rounds) text += " --flow-rounds " + std::to_string(flow.rounds);
   bool all = true;
   for (const BodySettings& body : study.bodies) all = all && body.flow;
@@ -206,6 +216,11 @@ Result<std::string> command_line(const Study& study) {
   if (!groups) return groups.error();
   if (study.flow && study.flow->viscosity != StudyFlow{}.viscosity)
     return cannot("the viscosity of the flow");
+  if (study.flow && study.flow->field &&
+      std::none_of(std::begin(kFileUnits), std::end(kFileUnits), [&](const FileUnit& known) {
+        return known.mm == study.flow->field->source.unit;
+      }))
+    return cannot("the unit of the solver's result");
   return text + *sizing + *groups + flow_options(study) + " -o " + quoted(study.name + ".msh");
 }
 

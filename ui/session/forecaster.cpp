@@ -140,21 +140,26 @@ QString Forecaster::description() const {
   if (!bodies_) return tr("Not known yet.");
   double natural = 0, corrected = 0;
   int solves = 0;
+  bool flows = false;
   for (const BodyForecast& body : *bodies_) {
     natural += body.mesh.natural.nodes;
     corrected += body.mesh.corrected.nodes;
     if (body.flow) solves += body.flow->solves;
+    flows = flows || body.flow;
   }
   const MeshForecast all = total();
   const QString form =
-      solves > 0 ? tr("At most about %L1 nodes and %L2 elements; meshing takes about %L3 MB.")
-                 : tr("About %L1 nodes and %L2 elements; meshing takes about %L3 MB.");
+      flows ? tr("At most about %L1 nodes and %L2 elements; meshing takes about %L3 MB.")
+            : tr("About %L1 nodes and %L2 elements; meshing takes about %L3 MB.");
   QString text =
       form.arg(all.nodes, 0, 'f', 0).arg(all.elements, 0, 'f', 0).arg(all.memory, 0, 'f', 0);
   if (solves > 0)
     text += " " + tr("The flow is solved %1 times; before it: %L2 nodes.")
                       .arg(solves)
                       .arg(corrected, 0, 'f', 0);
+  if (flows && solves == 0)
+    text += " " +
+            tr("Before the correction by the solver's field: %L1 nodes.").arg(corrected, 0, 'f', 0);
   if (std::abs(corrected - natural) > 0.5)
     text += " " + tr("Without the sizes: %L1 nodes.").arg(natural, 0, 'f', 0);
   return text;

@@ -524,7 +524,13 @@ void Session::run() {
   begin(
       Activity::running,
       [this, study = study_, parts = parts_, sources = sources_, params,
-       again](const Progress& whole) mutable -> Worker::Done {
+       again, copies = project_.copies,
+       known = result_](const Progress& whole) mutable -> Worker::Done {
+        // What is missing is told before the work.
+        const auto field = solver_field_of(services_, *study, copies, known, whole.portion(0, 0));
+        if (!field)
+          return [this, error = field.error()]() mutable { finish_run(std::move(error)); };
+        worker_.post([this, known] { take_result(known); });
         if (again) {
           auto read =
               read_again(services_, *parts, sources, params, whole.portion(0, 0.05, "reading"));
@@ -563,7 +569,8 @@ void Session::run() {
                                     .arg(record.interface_error, 0, 'f', 4));
                 add_iteration({record, state, prepared});
               });
-            });
+            },
+            *field);
         if (result && result->state && result->state != last.first)
           last.second = prepare(result->state);
         return [this, result = std::move(result), prepared = last.second]() mutable {

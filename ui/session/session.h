@@ -17,6 +17,7 @@
 #include "ui/services.h"
 #include "ui/session/item.h"
 #include "ui/session/read_parts.h"
+#include "ui/session/solver_result.h"
 #include "ui/session/worker.h"
 
 namespace lamella::ui {
@@ -146,6 +147,13 @@ class Session : public QObject {
   /// Solves the flow through the shown mesh, which carries it from then on.
   void solve_flow();
   bool can_flow() const { return activity_ == Activity::idle && shown_state() != nullptr; }
+  /// Reads the result of another solver, by whose first field the study then corrects the mesh, in
+  /// one undoable step; on the shown mesh it is seen at once.
+  void open_result(const std::filesystem::path& file);
+  /// What was read last of the file that the study names; else null.
+  std::shared_ptr<const SolverResult> result() const;
+  /// Diagonal of the bodies, or of the mesh where there are none, mm.
+  double extent() const;
   /// What was found last; nothing once the bodies have changed.
   const std::optional<OverlapCheck>& overlaps() const { return overlaps_; }
   /// Holds the run, or lets it go on.
@@ -188,6 +196,8 @@ class Session : public QObject {
   void progressed(double fraction, const QString& phase, double seconds_left);
   void run_finished();
   void overlaps_changed();
+  /// The result of another solver was read.
+  void result_read();
   /// `notes` are what a solver will complain about, one a line; mostly empty.
   void exported(const QString& file, const QString& notes);
   void saved(const QString& file);
@@ -223,6 +233,7 @@ class Session : public QObject {
   /// What became of the run that a project was saved after, for its mesh.
   void take_report(Iteration& iteration);
   void drop_overlaps();
+  void take_result(std::shared_ptr<const SolverResult> result);
   void remove_zone(int index);
   void set_activity(Activity activity);
   void begin(Activity activity, Worker::Job job);
@@ -260,6 +271,7 @@ class Session : public QObject {
   std::shared_ptr<const Study> run_study_;
   Project project_;  // as it was opened; its copies of inputs are in use
   std::shared_ptr<const MeshState> opened_mesh_;
+  std::shared_ptr<const SolverResult> result_;
   Activity activity_ = Activity::idle;
   bool mesh_unsaved_ = false;
   int shown_ = -1;

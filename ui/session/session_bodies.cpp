@@ -1,7 +1,6 @@
 #include <QElapsedTimer>
 #include <algorithm>
 
-#include "core/study/flow_of_mesh.h"
 #include "core/study/zone_surface.h"
 #include "ui/commands/edit_study.h"
 #include "ui/session/session.h"
@@ -154,48 +153,6 @@ void Session::look_for_overlaps(double gap_width) {
           Q_EMIT overlaps_changed();
         };
       });
-}
-
-void Session::solve_flow() {
-  const auto state = shown_state();
-  if (activity_ != Activity::idle || !state) return;
-  Q_EMIT logged(tr("Solving the flow through %L1 nodes").arg(state->mesh.node_count()));
-  begin(Activity::flowing,
-        [this, state, study = study_, parts = parts_](const Progress& progress) -> Worker::Done {
-          QElapsedTimer clock;
-          clock.start();
-          Result<FlowFields> flow = flow_of_mesh(*state, *study, *parts, progress);
-          std::shared_ptr<const MeshState> flowing;
-          std::shared_ptr<const PreparedMesh> prepared;
-          if (flow) {
-            auto made = std::make_shared<MeshState>(*state);
-            made->flow = std::make_shared<const FlowFields>(std::move(*flow));
-            flowing = std::move(made);
-            prepared = prepare(flowing);
-          }
-          const double seconds = static_cast<double>(clock.elapsed()) / 1000;
-          return [this, state, flowing, prepared, seconds, flow = std::move(flow)] {
-            set_activity(Activity::idle);
-            if (!flowing) return report(flow.error());
-            const FlowFields& fields = *flowing->flow;
-            Q_EMIT logged(tr("Flow: %1 iterations, %2 mm³/s, %3 s")
-                              .arg(fields.residuals.size() - 1)
-                              .arg(fields.rate(), 0, 'g', 5)
-                              .arg(seconds, 0, 'f', 1));
-            // It is the same mesh for the report as well.
-            if (outcome_ && outcome_->state == state) outcome_->state = flowing;
-            if (opened_mesh_ == state) opened_mesh_ = flowing;
-            mesh_unsaved_ = has_bodies();
-            for (std::size_t k = 0; k < iterations_.size(); ++k) {
-              if (iterations_[k].state != state) continue;
-              iterations_[k].state = flowing;
-              iterations_[k].prepared = prepared;
-              iterations_[k].record.flow_rate = fields.rate();
-              iterations_[k].record.flow_pressure = fields.highest_pressure();
-              if (static_cast<int>(k) == shown_) Q_EMIT shown_changed();
-            }
-          };
-        });
 }
 
 }  // namespace lamella::ui

@@ -18,7 +18,8 @@ enum class ColorBy {
   speed,  // of the flow, up to indicator
   pressure,
   shear,
-  indicator
+  indicator,
+  field  // of another solver
 };
 /// Known on the surfaces of the bodies before there is a mesh, once their walls are measured.
 constexpr bool of_walls(ColorBy field) {

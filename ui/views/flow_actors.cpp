@@ -201,7 +201,7 @@ void FlowActors::draw(vtkUnstructuredGrid* grid, const MeshState* state,
   double fastest = 0;
   for (std::size_t n = 1; state && n < state->flow->velocity.size(); ++n)
     fastest = std::max(fastest, state->flow->velocity[n].norm());
-  const bool any = grid && look.any() && fastest > 0;
+  const bool moves = fastest > 0, any = grid && look.any() && (moves || has_levels(*state));
   vtkSmartPointer<vtkPolyData> cut;
   if (any && !sections.empty()) {
     vtkNew<vtkPlane> plane;
@@ -213,23 +213,25 @@ void FlowActors::draw(vtkUnstructuredGrid* grid, const MeshState* state,
     cutter->Update();
     cut = cutter->GetOutput();
   }
-  impl_->arrows->SetVisibility(any && look.arrows);
-  impl_->lines->SetVisibility(any && look.lines);
+  impl_->arrows->SetVisibility(moves && any && look.arrows);
+  impl_->lines->SetVisibility(moves && any && look.lines);
   impl_->levels->SetVisibility(any && look.levels && cut);
   if (!any) return;
   const double diagonal = diagonal_of({state->mesh.points.begin() + 1, state->mesh.points.end()});
   const bool dark = of_flow(color_by);
-  if (look.arrows) {
+  if (look.arrows && moves) {
     impl_->draw_arrows(cut, *state, diagonal, fastest);
     Impl::color(*impl_->arrows, *impl_->arrow_mapper, *state, dark);
   }
-  if (look.lines) {
+  if (look.lines && moves) {
     impl_->draw_lines(grid, *state, diagonal, fastest);
     Impl::color(*impl_->lines, *impl_->line_mapper, *state, dark);
   }
   if (look.levels && cut) {
-    impl_->draw_levels(cut, *state,
-                       color_by == ColorBy::pressure ? ColorBy::pressure : ColorBy::speed);
+    const ColorBy of = has_field(*state, ColorBy::field) ? ColorBy::field
+                       : color_by == ColorBy::pressure   ? ColorBy::pressure
+                                                         : ColorBy::speed;
+    impl_->draw_levels(cut, *state, of);
     Impl::color(*impl_->levels, *impl_->level_mapper, *state, true);
   }
 }

@@ -12,7 +12,14 @@ struct Texts {
   Q_DECLARE_TR_FUNCTIONS(lamella::ui::Legends)
 };
 
-QString flow_title(ColorBy field) {
+QString flow_title(ColorBy field, const MeshState* state = nullptr) {
+  const bool of_solver = state && state->flow && state->flow->components > 0;
+  if (of_solver && (field == ColorBy::field || field == ColorBy::speed)) {
+    const QString name = QString::fromStdString(state->flow->field);
+    return state->flow->components == 1 ? name : QString("|%1|").arg(name);
+  }
+  if (field == ColorBy::field) return Texts::tr("Solver's field");
+  if (of_solver) return Texts::tr("Indicator");
   return field == ColorBy::speed      ? Texts::tr("Velocity, mm/s")
          : field == ColorBy::pressure ? Texts::tr("Pressure, MPa")
          : field == ColorBy::shear    ? Texts::tr("Shear rate, 1/s")
@@ -71,9 +78,10 @@ Legend field_legend(ColorBy field, const MeshState& state, int layers_asked,
     case ColorBy::speed:
     case ColorBy::pressure:
     case ColorBy::shear:
-    case ColorBy::indicator: {
+    case ColorBy::indicator:
+    case ColorBy::field: {
       const auto [low, high] = robust_range(field_values(state, field));
-      legend = {flow_title(field), low, high, sequential_map()};
+      legend = {flow_title(field, &state), low, high, sequential_map()};
       break;
     }
   }
@@ -88,7 +96,9 @@ Legend missing_legend(ColorBy field, bool meshed) {
                  : field == ColorBy::size      ? Texts::tr("Smallest size asked")
                  : field == ColorBy::layers    ? Texts::tr("Layers through the wall")
                                                : Texts::tr("Filling ratio");
-  legend.missing = !meshed                     ? Texts::tr("known once the part is meshed")
+  legend.missing = !meshed ? Texts::tr("known once the part is meshed")
+                   : field == ColorBy::field
+                       ? Texts::tr("known once another solver's result is read")
                    : of_flow(field)            ? Texts::tr("known once the flow is solved")
                    : field == ColorBy::filling ? Texts::tr("this mesh has no fuzzy interfaces")
                                                : Texts::tr("not in this mesh");

@@ -70,6 +70,8 @@ FieldArray array_of(ColorBy field) {
       return {"shear rate", true};
     case ColorBy::indicator:
       return {"indicator", true};
+    case ColorBy::field:
+      return {"field", false};
   }
   return {};
 }
@@ -93,10 +95,20 @@ bool has_field(const MeshState& state, ColorBy field) {
     case ColorBy::pressure:
     case ColorBy::shear:
     case ColorBy::indicator:
-      return state.flow && state.flow->velocity.size() == nodes &&
-             state.flow->shear.size() == elements;
+    case ColorBy::field:
+      break;
   }
-  return false;
+  if (!state.flow || state.flow->velocity.size() != nodes || state.flow->shear.size() != elements)
+    return false;
+  // The vector of another solver is drawn like a velocity.
+  const int components = state.flow->components;
+  return field == ColorBy::indicator || (field == ColorBy::field && components > 0) ||
+         (field == ColorBy::speed && components != 1) ||
+         ((field == ColorBy::pressure || field == ColorBy::shear) && components == 0);
+}
+
+bool has_levels(const MeshState& state) {
+  return has_field(state, ColorBy::speed) || has_field(state, ColorBy::field);
 }
 
 std::vector<double> field_values(const MeshState& state, ColorBy field) {
@@ -116,8 +128,9 @@ std::vector<double> field_values(const MeshState& state, ColorBy field) {
       asked.push_back(sizes<3>(state.metric[n])[0]);
     return asked;
   }
+  if (field == ColorBy::field && state.flow->components == 1) return of_nodes(state.flow->number);
   std::vector<double> speed;
-  if (field == ColorBy::speed)
+  if (field == ColorBy::speed || field == ColorBy::field)
     for (std::size_t n = 1; n < state.flow->velocity.size(); ++n)
       speed.push_back(state.flow->velocity[n].norm());
   return speed;
@@ -126,8 +139,9 @@ std::vector<double> field_values(const MeshState& state, ColorBy field) {
 void add_fields(const MeshState& state, const std::vector<std::int32_t>& element,
                 const std::vector<std::int32_t>& node, vtkDataSetAttributes& cells,
                 vtkDataSetAttributes& points) {
-  for (const ColorBy field : {ColorBy::quality, ColorBy::thickness, ColorBy::layers, ColorBy::speed,
-                              ColorBy::pressure, ColorBy::shear, ColorBy::indicator}) {
+  for (const ColorBy field :
+       {ColorBy::quality, ColorBy::thickness, ColorBy::layers, ColorBy::speed, ColorBy::pressure,
+        ColorBy::shear, ColorBy::indicator, ColorBy::field}) {
     const std::vector<double> values = field_values(state, field);
     if (values.empty()) continue;
     const auto [name, of_elements] = array_of(field);

@@ -32,6 +32,8 @@ FieldArray array_of(ColorBy field);
 constexpr const char* velocity_array = "velocity";
 /// Whether the mesh carries the field; of the filling ratio, of any body.
 bool has_field(const MeshState& state, ColorBy field);
+/// Whether there is a field of a flow, or of another solver, whose level sets can be drawn.
+bool has_levels(const MeshState& state);
 /// Values of a field, without the virtual node; empty where there is none, and of the filling
 /// ratio.
 std::vector<double> field_values(const MeshState& state, ColorBy field);

@@ -239,7 +239,7 @@ struct Scene::Impl {
 
   /// Arrows and lines within the mesh, which lets them be seen.
   void draw_flow() {
-    const bool on = skins && flow_look.any() && has(ColorBy::speed);
+    const bool on = skins && flow_look.any() && state && has_levels(*state);
     flow.draw(on ? skins.grid() : nullptr, on ? state.get() : nullptr, sections, flow_look,
               color_by);
     mesh_actor->GetProperty()->SetOpacity(sees_lines() ? 0.3 : 1);

@@ -75,6 +75,7 @@ ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(a
   colors_->addItem(tr("Pressure"), int(ColorBy::pressure));
   colors_->addItem(tr("Shear rate"), int(ColorBy::shear));
   colors_->addItem(tr("Flow indicator"), int(ColorBy::indicator));
+  colors_->addItem(tr("Solver's field"), int(ColorBy::field));
   colors_->setMinimumWidth(140);
   row->addWidget(colors_);
   bodies_ = new QComboBox;

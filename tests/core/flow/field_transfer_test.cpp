@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/mesh/sample_meshes.h"
+#include "core/study/measure.h"
 
 namespace lamella {
 namespace {
@@ -61,6 +62,37 @@ TEST(FieldTransfer, RefusesAnotherUnitPlaceOrLength) {
   const auto beside = box(2, Vec<3>::Constant(3), Vec<3>::Constant(4));
   EXPECT_FALSE(transfer_field(beside, values_of(beside), 3, to).ok());
   EXPECT_FALSE(transfer_field(to, {1, 2}, 1, to).ok());
+}
+
+TEST(FieldTransfer, TheHintSaysWhatUnitWouldFit) {
+  const auto to = box(2, Vec<3>::Zero(), Vec<3>::Constant(50)),
+             meters = box(2, Vec<3>::Zero(), Vec<3>::Constant(0.05));
+  const auto found = transfer_field(meters, values_of(meters), 3, to);
+  ASSERT_FALSE(found.ok());
+  EXPECT_NE(found.error().hint.find("1000 times"), std::string::npos) << found.error().hint;
+}
+
+TEST(FieldTransfer, AShiftedPartIsRefusedWithItsDistance) {
+  const auto to = box(4, Vec<3>::Zero(), Vec<3>::Constant(10)),
+             shifted = box(4, Vec<3>(8, 0, 0), Vec<3>(18, 10, 10));
+  const auto found = transfer_field(shifted, values_of(shifted), 3, to);
+  ASSERT_FALSE(found.ok());
+  EXPECT_EQ(found.error().code, Code::bad_input);
+  EXPECT_NE(found.error().message.find("up to 8 mm"), std::string::npos) << found.error().message;
+  EXPECT_NE(found.error().hint.find("shifted"), std::string::npos);
+  const auto surface = boundary_surface(to, 0);
+  EXPECT_FALSE(check_place(shifted, surface, 17.3).ok());
+  EXPECT_TRUE(check_place(to, surface, 17.3).ok());
+}
+
+TEST(FieldTransfer, AFieldOfTheWholeCoversASmallPartOfIt) {
+  const auto whole = box(4, Vec<3>::Zero(), Vec<3>::Constant(100)),
+             insert = box(2, Vec<3>::Constant(40), Vec<3>::Constant(45));
+  EXPECT_FALSE(transfer_field(whole, values_of(whole), 3, insert).ok());
+  const auto found = transfer_field(whole, values_of(whole), 3, insert, 0, {}, 173.2);
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  for (std::size_t n = 1; n < insert.points.size(); ++n)
+    EXPECT_NEAR(found->values[3 * n], linear(insert.points[n]), 1e-9);
 }
 
 }  // namespace

@@ -214,6 +214,47 @@ TEST(MshOfOthers, SecondOrderCountsByItsCorners) {
   EXPECT_EQ(back->of_nodes[0].values, (std::vector<double>{0, 0.1, 0.2, 0.3, 0.4}));
 }
 
+TEST(MshOfOthers, AViewWithValuesAtCornersIsAveragedAtTheNodes) {
+  // As `Save View` of Gmsh writes one: the elements that are no tetrahedra have values too.
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_file(folder / "view.msh", R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+5
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 1 1 1
+$EndNodes
+$Elements
+3
+1 2 2 1 1 1 2 3
+7 4 2 1 1 1 2 3 4
+9 4 2 1 1 2 3 4 5
+$EndElements
+$ElementNodeData
+1
+"T"
+1
+0
+3
+0
+1
+3
+1 3 100 100 100
+7 4 1 2 3 4
+9 4 4 3 8 6
+$EndElementNodeData
+)"));
+  const Result<MeshContent> content = read_msh(folder / "view.msh");
+  ASSERT_TRUE(content.ok()) << content.error().message;
+  ASSERT_EQ(content->of_nodes.size(), 1u);
+  EXPECT_EQ(content->of_nodes[0].name, "T");
+  EXPECT_EQ(content->of_nodes[0].values, (std::vector<double>{0, 1, 3, 3, 6, 6}));
+}
+
 TEST(MshOfOthers, SolidsThatAreNoTetrahedraAreRefusedNotLost) {
   const test::TemporaryFolder folder;
   std::string text = kSecondOrder;

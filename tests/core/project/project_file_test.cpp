@@ -151,6 +151,54 @@ TEST_F(ProjectFile, AMissingInputIsTakenFromTheProjectOrMissed) {
   EXPECT_EQ(read_file(kept->files[0]).value(), "solid a");
 }
 
+TEST_F(ProjectFile, AResultOfAnotherSolverIsLinkedOrCopiedLikeAPart) {
+  ProjectContent saved = content("");
+  write("results/solved.vtu", "a result");
+  StudyFlow flow;
+  flow.method = FlowMethod::field;
+  flow.field = StudyField{{(folder / "results/solved.vtu").string(), 1000}, "T"};
+  EXPECT_TRUE(identify(flow.field->source, folder / "results/solved.vtu"));
+  saved.study.flow = flow;
+  ASSERT_TRUE(save_project(saved, file));
+  const Result<Archive> zip = Archive::open(file);
+  ASSERT_TRUE(zip);
+  EXPECT_NE(zip->read(*zip->find("project.json"), 10000)->find("\"results/solved.vtu\""),
+            std::string::npos)
+      << "a project can be moved with its results";
+  EXPECT_EQ(opened().study.flow, saved.study.flow);
+  EXPECT_TRUE(opened().notes.empty());
+
+  // Another content is told, and makes another mesh.
+  write("results/solved.vtu", "another result");
+  const Project changed = opened();
+  ASSERT_EQ(changed.notes.size(), 1u);
+  EXPECT_NE(mesh_key(changed.study), mesh_key(saved.study));
+
+  // Without it the parts open all the same: only a run needs it.
+  fs::remove(folder / "results/solved.vtu");
+  const Project without = opened();
+  ASSERT_EQ(without.notes.size(), 1u);
+  EXPECT_NE(without.notes[0].find("solved.vtu\" is missing"), std::string::npos);
+  EXPECT_EQ(without.study.flow->field->source.sha256, flow.field->source.sha256);
+  EXPECT_EQ(without.files.size(), 1u);
+
+  // A project to hand on holds it.
+  write("results/solved.vtu", "a result");
+  saved.study.embed_inputs = true;
+  ASSERT_TRUE(save_project(saved, file));
+  fs::remove(folder / "results/solved.vtu");
+  const Project handed = opened();
+  ASSERT_EQ(handed.copies.count(flow.field->source.sha256), 1u);
+  EXPECT_EQ(read_file(handed.copies.at(flow.field->source.sha256)).value(), "a result");
+  ProjectContent again;
+  again.study = handed.study;
+  again.copies = handed.copies;
+  ASSERT_TRUE(save_project(again, folder / "t.lamella"));
+  const Result<Project> third = open_project(folder / "t.lamella");
+  ASSERT_TRUE(third);
+  EXPECT_EQ(third->copies.count(flow.field->source.sha256), 1u) << "copies are copied on";
+}
+
 TEST_F(ProjectFile, OnlyWhatWasReadIsCopied) {
   ProjectContent saved = content();
   saved.study.embed_inputs = true;

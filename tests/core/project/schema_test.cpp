@@ -59,6 +59,10 @@ Study full_study() {
                   {"4", "", WholeBody{}, flat},
                   {"5", "a", faces, BoundaryLayer{0.5, 3}}};
   study.groups = {{"gate", GroupKind::gate, "a", {1}, {"top"}, {{{1, 2, 3}, 0.3}}}};
+  study.flow.emplace();
+  study.flow->method = FlowMethod::field;
+  study.flow->h_min = 0.1;
+  study.flow->field = StudyField{{"r.vtu", 1000, sha256("r"), 1, "inputs/3-r.vtu"}, "T"};
   study.cuts = {{"cut"}};
   return study;
 }
@@ -96,6 +100,11 @@ TEST_F(PublishedSchema, WhatItRefusesWeRefuseToo) {
                                                              {"/sizing/0/gradation", 1},
                                                              {"/sizing/2/zone/sizes", {1, 1}},
                                                              {"/groups/0/kind", "door"},
+                                                             {"/flow/method", "guess"},
+                                                             {"/flow/h_min", 0},
+                                                             {"/flow/field/file", ""},
+                                                             {"/flow/field/name", ""},
+                                                             {"/flow/field/unit", -1},
                                                              {"/cuts/0/origin", "here"},
                                                              {"/unknown", 1}};
   for (const auto& [path, value] : changes) {

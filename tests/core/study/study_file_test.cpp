@@ -278,6 +278,55 @@ TEST(StudyFile, EveryMistakeOfAZoneIsNamed) {
   }
 }
 
+TEST(StudyFile, AFieldOfAnotherSolverReadsBackAsWritten) {
+  Study study;
+  StudyFlow flow;
+  flow.method = FlowMethod::indicator;
+  flow.h_min = 0.25;
+  flow.field = StudyField{{"solved.vtu", 1000, std::string(64, 'a'), 12}, "T \"K\""};
+  study.flow = flow;
+  const std::string text = study_to_json(study);
+  const Result<Study> back = study_from_json(text, "s");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->flow, study.flow);
+  // Another place of the same file is the same mesh, another field or unit is not.
+  Study other = study;
+  other.flow->field->source.file = "/elsewhere/solved.vtu";
+  EXPECT_EQ(mesh_key(other), mesh_key(study));
+  other.flow->field->name = "p";
+  EXPECT_NE(mesh_key(other), mesh_key(study));
+  // A flow as it was written before there were fields.
+  const Result<Study> old = study_from_json(
+      R"({"schema": 2, "flow": {"method": "strain", "strength": 2, "viscosity": 3}})", "s");
+  ASSERT_TRUE(old.ok()) << old.error().message;
+  EXPECT_EQ(old->flow->method, FlowMethod::strain);
+  EXPECT_FALSE(old->flow->field.has_value());
+  study.flow->field.reset();
+  study.flow->h_min.reset();
+  study.flow->method = FlowMethod::strain;
+  EXPECT_EQ(study_to_json(study).find("field"), std::string::npos)
+      << "what older versions do not know is not written without need";
+}
+
+TEST(StudyFile, EveryMistakeOfAFieldIsNamed) {
+  const auto complaint = [](const std::string& flow) {
+    const Result<Study> read = study_from_json(R"({"schema": 2, "flow": )" + flow + "}", "s");
+    return read ? std::string() : read.error().message;
+  };
+  const std::string file = R"("file": "a.vtu")", name = R"("name": "T")";
+  EXPECT_EQ(complaint(R"({"field": {)" + file + ", " + name + "}}"), "");
+  for (const auto& [flow, member] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"field": {)" + name + "}}", "flow.field.file"},
+           {R"({"field": {)" + file + "}}", "flow.field.name"},
+           {R"({"field": {"unit": 0, )" + file + ", " + name + "}}", "flow.field.unit"},
+           {R"({"field": {"x": 0, )" + file + ", " + name + "}}", "flow.field.x"},
+           {R"({"field": "a.vtu"})", "flow.field"},
+           {R"({"method": "residual", "field": {)" + file + ", " + name + "}}", "flow.method"},
+           {R"({"method": "field"})", "flow.method"},
+           {R"({"h_min": 0})", "flow.h_min"}})
+    EXPECT_NE(complaint(flow).find(member), std::string::npos) << flow << complaint(flow);
+}
+
 TEST(StudyFile, LeftOutMeansDefault) {
   const Result<Study> study = study_from_json(R"({"schema": 1, "bodies": [{"name": "a"}]})", "s");
   ASSERT_TRUE(study.ok());
