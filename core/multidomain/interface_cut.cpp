@@ -33,6 +33,8 @@ constexpr double smooth_turn = 0.8;
 constexpr double chain_share = 0.2;
 /// Of the error of chords: what a chord over two of them lies deep at most, 4, and a margin.
 constexpr double crease_of_chords = 8;
+/// Of the tolerance: borders of two zones this near to each other become one.
+constexpr double shared_share = 0.5;
 /// Rounds of looking for edges that cross a border.
 constexpr int split_rounds = 12;
 /// Rounds of looking for elements that a border passes through, and of the tolerance: how deep.
@@ -364,7 +366,9 @@ class Cutter {
       const double beyond = (x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm();
       phi_[n] = mesh_.metric[n].quad(Vec<3>::Constant(beyond)) > 100 ? beyond : phi_at(x);
       if (std::abs(phi_[n]) <= mesh_.exact ||
-          (mesh_.locked[n] && std::abs(phi_[n]) <= feature_share * params_.tolerance)) {
+          (mesh_.locked[n] && std::abs(phi_[n]) <= feature_share * params_.tolerance) ||
+          (std::abs(phi_[n]) <= shared_share * params_.tolerance &&
+           !mesh_.hold(std::array{n}).zones.empty())) {
         slack_[n] = std::abs(phi_[n]);
         phi_[n] = 0;
       }
