@@ -26,11 +26,12 @@ const char* const kStyle =
     "body{font-family:'Inter','Noto Sans','DejaVu Sans',sans-serif;font-size:8pt;color:#1d2733}"
     "h1{font-size:17pt;margin-bottom:2px}"
     "h2{font-size:10pt;color:#0f6b8f;margin-top:16px;margin-bottom:4px;text-align:left}"
-    "h3{font-size:8pt;font-weight:600;margin-top:8px;margin-bottom:3px;text-align:left}"
+    "h4{font-size:8pt;font-weight:600;margin-top:8px;margin-bottom:3px;text-align:left}"
     "p{margin-top:3px;margin-bottom:3px}"
     "td,th{padding:2px 5px 2px 0;text-align:right;vertical-align:top}"
     "th{color:#5b6875;font-weight:600}"
-    ".left{text-align:left}"
+    "td{white-space:nowrap}"
+    ".left{text-align:left;white-space:normal}"
     ".legend span{color:#5b6875}"
     ".good{color:#2c7a4b}.warn{color:#b45f06}.bad{color:#b3261e}"
     ".hash,.soft{color:#5b6875}"
@@ -56,10 +57,14 @@ QImage drawn(QString svg) {
   return image;
 }
 
-/// A document does not find the height that belongs to a width.
-QString sized(const QString& url, const QImage& image, int width) {
+/// A document does not find the height that belongs to a width, and leaves room around a picture
+/// that has no cell of its own.
+QString placed(const QString& url, const QImage& image, int width) {
   const int height = image.isNull() ? 0 : width * image.height() / image.width();
-  return QString("<img src=\"%1\" width=\"%2\" height=\"%3\">").arg(url).arg(width).arg(height);
+  return QString("<table><tr><td><img src=\"%1\" width=\"%2\" height=\"%3\"></td></tr></table>")
+      .arg(url)
+      .arg(width)
+      .arg(height);
 }
 
 /// Puts the report into a document: its plots become pictures, its tables as wide as the page.
@@ -70,24 +75,24 @@ void lay_out(QString html, QTextDocument& document) {
       picture("<img [^>]*src=\"data:image/png;base64,([^\"]*)\">"), first("<tr><(td|th)>"),
       caption("<p class=\"caption\">(.*?)</p>"), name("(<td class=\"left\">)([^<]*)");
   html.remove(style);
-  html.replace(caption, "<h3>\\1</h3>");  // stays with what it is about
+  html.replace(caption, "<h4>\\1</h4>");  // stays with what it is about
   int plots = 0;
   for (auto found = plot.match(html); found.hasMatch(); found = plot.match(html)) {
     const QString url = QString("plot:%1").arg(plots++);
     const QImage image = drawn(found.captured());
     document.addResource(QTextDocument::ImageResource, QUrl(url), image);
-    html.replace(found.capturedStart(), found.capturedLength(), sized(url, image, kPage / 2 - 16));
+    html.replace(found.capturedStart(), found.capturedLength(), placed(url, image, kPage / 2 - 16));
   }
-  // A picture that stands in no cell gets room around it.
   int pictures = 0;
   for (auto found = picture.match(html); found.hasMatch(); found = picture.match(html)) {
     const QString url = QString("picture:%1").arg(pictures++);
     const QImage image =
         QImage::fromData(QByteArray::fromBase64(found.captured(1).toLatin1()), "PNG");
     document.addResource(QTextDocument::ImageResource, QUrl(url), image);
-    html.replace(found.capturedStart(), found.capturedLength(),
-                 "<table><tr><td>" + sized(url, image, kPage) + "</td></tr></table>");
+    html.replace(found.capturedStart(), found.capturedLength(), placed(url, image, kPage));
   }
+  // Pages end between tables, not between their rows.
+  html.replace("</td></tr><tr><td><h4>", "</td></tr></table><table class=\"plots\"><tr><td><h4>");
   html.replace("</span><span class=\"badge", "</span> \u00b7 <span class=\"badge");
   html.replace(first, "<tr><\\1 class=\"left\">");
   // Lines end between words. Names have but one: theirs may end behind an underscore.
@@ -158,6 +163,7 @@ void print(QTextDocument& document, QPdfWriter& writer) {
   const QSizeF page(writer.width(), writer.height());
   document.setPageSize(page);
   keep_heads(document);
+  document.markContentsDirty(0, document.characterCount());
   const double around = margin * writer.resolution() / 96;
   for (int k = 0; k < document.pageCount(); ++k) {
     if (k > 0) writer.newPage();
