@@ -257,6 +257,11 @@ void MainWindow::make_status_bar() {
   counts_->setContentsMargins(12, 5, 0, 5);
   state_->setContentsMargins(0, 5, 12, 5);
   statusBar()->addWidget(counts_, 1);
+  auto* unit = new QLabel(units::name());
+  unit->setObjectName("unit");
+  unit->setToolTip(tr("The unit of all lengths; Preferences change it"));
+  connect(&Units::get(), &Units::changed, unit, [unit] { unit->setText(units::name()); });
+  statusBar()->addPermanentWidget(unit);
   statusBar()->addPermanentWidget(state_);
   statusBar()->addPermanentWidget(progress_);
   statusBar()->setContentsMargins(0, 0, 10, 0);
@@ -359,8 +364,9 @@ void MainWindow::connect_actions() {
   connect(act[Act::about], &QAction::triggered, this, [this] {
     banner_->show_message(
         Banner::Kind::info, tr("Lamella %1").arg(LAMELLA_VERSION),
-        tr("Anisotropic tetrahedral meshes for injection molding. Apache License 2.0. "
-           "Uses Qt, VTK, Open CASCADE, Netgen, Eigen and oneTBB."));
+        tr("Anisotropic tetrahedral meshes for injection molding. Apache License 2.0.\n"
+           "Made with %1.")
+            .arg(LAMELLA_LIBRARIES));
   });
 }
 

@@ -1758,10 +1758,6 @@ rendu uniforme sur les éléments</translation>
         <translation>Lamella %1</translation>
     </message>
     <message>
-        <source>Anisotropic tetrahedral meshes for injection molding. Apache License 2.0. Uses Qt, VTK, Open CASCADE, Netgen, Eigen and oneTBB.</source>
-        <translation>Maillages tétraédriques anisotropes pour le moulage par injection. Licence Apache 2.0. Utilise Qt, VTK, Open CASCADE, Netgen, Eigen et oneTBB.</translation>
-    </message>
-    <message>
         <source>Undo</source>
         <translation>Annuler</translation>
     </message>
@@ -2044,6 +2040,16 @@ rendu uniforme sur les éléments</translation>
     <message>
         <source>Studies and parts (*.lamella *.json %1);;Meshes (%2);;All files (*)</source>
         <translation>Études et pièces (*.lamella *.json %1);;Maillages (%2);;Tous les fichiers (*)</translation>
+    </message>
+    <message>
+        <source>The unit of all lengths; Preferences change it</source>
+        <translation>L’unité de toutes les longueurs ; les préférences la changent</translation>
+    </message>
+    <message>
+        <source>Anisotropic tetrahedral meshes for injection molding. Apache License 2.0.
+Made with %1.</source>
+        <translation>Maillages tétraédriques anisotropes pour le moulage par injection. Licence Apache 2.0.
+Réalisé avec %1.</translation>
     </message>
 </context>
 <context>

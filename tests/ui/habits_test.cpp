@@ -1,6 +1,7 @@
 #include <QAccessible>
 #include <QComboBox>
 #include <QDialog>
+#include <QLabel>
 #include <QLineEdit>
 #include <QPlainTextEdit>
 #include <QSettings>
@@ -148,6 +149,7 @@ TEST_F(HabitsTest, InchesAreShownAndTypedAndMillimetersKept) {
   Preferences preferences(&window_);
   preferences.findChild<QComboBox*>("unit")->setCurrentIndex(1);
   EXPECT_EQ(h_max->text(), "0.5 in");
+  EXPECT_EQ(find<QLabel>("unit")->text(), "in") << "the status bar says it";
   EXPECT_EQ(session().body(0).h_max, 12.7);
   EXPECT_TRUE(find<LengthBox>("h_min")->text().endsWith(" in"));
   h_max->findChild<QLineEdit*>()->setText("0.25 in");
