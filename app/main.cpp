@@ -25,7 +25,9 @@
 #include "ui/language.h"
 #include "ui/main_window.h"
 #include "ui/report_pdf.h"
+#include "ui/session/forecaster.h"
 #include "ui/session/session.h"
+#include "ui/session/wall_map.h"
 #include "ui/theme.h"
 #include "ui/views/model_view.h"
 #include "ui/views/vtk_view.h"
@@ -151,6 +153,7 @@ int play(ui::MainWindow& window, const Script& script) {
   if (const auto kind = kinds.indexOf(script.select); kind > 0)
     session.select_item({ui::ItemKind(kind), 0});
   if (script.cut) window.view().look_at_section();
+  wait_until([&] { return !window.view().walls().busy() && !window.forecaster().busy(); });
   if (script.flat) window.actions()[ui::Act::crinkle]->setChecked(false);
   if (const QStringList at = script.near.split(','); at.size() == 4)
     window.view().look_near(Vec<3>(at[0].toDouble(), at[1].toDouble(), at[2].toDouble()),

@@ -87,7 +87,9 @@ MainWindow::~MainWindow() {
 }
 
 void MainWindow::make_body() {
-  auto* central = new QWidget;
+  // From the top down: what moves to another parent has its style worked out anew, with all below.
+  auto* central = new QWidget(this);
+  setCentralWidget(central);
   auto* layout = new QVBoxLayout(central);
   layout->setContentsMargins(10, 10, 10, 10);
   layout->setSpacing(8);
@@ -95,23 +97,25 @@ void MainWindow::make_body() {
   layout->addWidget(banner_);
 
   // The study and its properties need the height, the plots the width that is left.
-  columns_ = new QSplitter(Qt::Horizontal);
-  rows_ = new QSplitter(Qt::Vertical);
-  study_ = new StudyPanel(*session_, *actions_);
+  columns_ = new QSplitter(Qt::Horizontal, central);
+  layout->addWidget(columns_, 1);
+  study_ = new StudyPanel(*session_, *actions_, columns_);
   study_->setMinimumWidth(250);
-  properties_ = new PropertiesPanel(*session_, *forecaster_, *actions_);
+  rows_ = new QSplitter(Qt::Vertical, columns_);
+  properties_ = new PropertiesPanel(*session_, *forecaster_, *actions_, columns_);
   properties_->setMinimumWidth(300);
-  stack_ = new QStackedWidget;
+  stack_ = new QStackedWidget(rows_);
   welcome_ = new Welcome(*actions_);
   view_ = new ModelView(*session_, *actions_);
   stack_->addWidget(scrolled(welcome_, tr("Start")));
   stack_->addWidget(view_);
 
-  auto* panel = new QFrame;
+  auto* panel = new QFrame(rows_);
   panel->setObjectName("panel");
   auto* inner = new QVBoxLayout(panel);
   inner->setContentsMargins(1, 1, 1, 1);
-  results_ = new QTabWidget;
+  results_ = new QTabWidget(panel);
+  inner->addWidget(results_);
   results_->setAccessibleName(tr("Results"));
   results_->setDocumentMode(true);
   results_->tabBar()->setDrawBase(false);
@@ -130,22 +134,14 @@ void MainWindow::make_body() {
   results_->addTab(overlaps_, tr("Overlaps and gaps"));
   auto* log = new LogPanel;
   results_->addTab(log, tr("Log"));
-  inner->addWidget(results_);
-  rows_->addWidget(stack_);
-  rows_->addWidget(panel);
   rows_->setStretchFactor(0, 1);
   rows_->setSizes({570, 230});
-  columns_->addWidget(study_);
-  columns_->addWidget(rows_);
-  columns_->addWidget(properties_);
   columns_->setStretchFactor(1, 1);
   columns_->setSizes({280, 840, 310});
   for (QSplitter* splitter : {rows_, columns_}) {
     splitter->setHandleWidth(8);
     splitter->setChildrenCollapsible(false);
   }
-  layout->addWidget(columns_, 1);
-  setCentralWidget(central);
   connect(session_, &Session::logged, log, &LogPanel::add);
   connect(welcome_, &Welcome::file_chosen, this,
           [this](const QString& file) { open_files({file}); });
@@ -262,6 +258,11 @@ void MainWindow::make_status_bar() {
   counts_->setContentsMargins(12, 5, 0, 5);
   state_->setContentsMargins(0, 5, 12, 5);
   statusBar()->addWidget(counts_, 1);
+  auto* unit = new QLabel(units::name());
+  unit->setObjectName("unit");
+  unit->setToolTip(tr("The unit of all lengths; Preferences change it"));
+  connect(&Units::get(), &Units::changed, unit, [unit] { unit->setText(units::name()); });
+  statusBar()->addPermanentWidget(unit);
   statusBar()->addPermanentWidget(state_);
   statusBar()->addPermanentWidget(progress_);
   statusBar()->setContentsMargins(0, 0, 10, 0);
@@ -364,8 +365,9 @@ void MainWindow::connect_actions() {
   connect(act[Act::about], &QAction::triggered, this, [this] {
     banner_->show_message(
         Banner::Kind::info, tr("Lamella %1").arg(LAMELLA_VERSION),
-        tr("Anisotropic tetrahedral meshes for injection molding. Apache License 2.0. "
-           "Uses Qt, VTK, Open CASCADE, Netgen, Eigen and oneTBB."));
+        tr("Anisotropic tetrahedral meshes for injection molding. Apache License 2.0.\n"
+           "Made with %1.")
+            .arg(LAMELLA_LIBRARIES));
   });
 }
 

@@ -4,6 +4,7 @@
 #include <QDir>
 #include <QFile>
 #include <QFontDatabase>
+#include <QIconEngine>
 #include <QPainter>
 #include <QPalette>
 #include <QRegularExpression>
@@ -11,6 +12,8 @@
 #include <QStyleFactory>
 #include <QSvgRenderer>
 #include <algorithm>
+#include <map>
+#include <utility>
 #include <vector>
 
 // Resources of a static library are only linked when asked for, outside of any namespace.
@@ -69,6 +72,28 @@ void choose_colors(bool dark) {
   theme::dark = dark;
   for (const auto& [color, value] : light) *color = dark ? turned(value) : value;
 }
+
+/// An icon that is drawn in the sizes in which it is seen, when it is.
+class DrawnIcon : public QIconEngine {
+ public:
+  explicit DrawnIcon(QString path) : path_(std::move(path)) {}
+  QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State) override {
+    const int side = std::min(size.width(), size.height());
+    const bool faint = mode == QIcon::Disabled;
+    QPixmap& made = drawn_[{side, faint}];
+    if (made.isNull()) made = render(path_, side, faint ? 0.35 : 1);
+    return made;
+  }
+  void paint(QPainter* painter, const QRect& rect, QIcon::Mode mode, QIcon::State state) override {
+    const double ratio = painter->device()->devicePixelRatio();
+    painter->drawPixmap(rect, pixmap((QSizeF(rect.size()) * ratio).toSize(), mode, state));
+  }
+  QIconEngine* clone() const override { return new DrawnIcon(*this); }
+
+ private:
+  QString path_;
+  std::map<std::pair<int, bool>, QPixmap> drawn_;
+};
 
 /// The icons that the style sheet names, in the colors of the theme, in a folder of their own.
 QString icons_of_sheet(const QString& sheet) {
@@ -133,15 +158,7 @@ void apply_theme(QApplication& application, bool dark) {
   application.setWindowIcon(QIcon(":/icons/lamella.svg"));
 }
 
-QIcon icon(const QString& name) {
-  const QString path = ":/icons/" + name + ".svg";
-  QIcon result;
-  for (const int size : {16, 20, 24, 32, 40, 48}) {
-    result.addPixmap(render(path, size, 1), QIcon::Normal);
-    result.addPixmap(render(path, size, 0.35), QIcon::Disabled);
-  }
-  return result;
-}
+QIcon icon(const QString& name) { return QIcon(new DrawnIcon(":/icons/" + name + ".svg")); }
 
 QColor body_color(int index, const std::array<double, 3>& rgb) {
   if (rgb[0] >= 0) {

@@ -1896,10 +1896,6 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <translation>Lamella %1</translation>
     </message>
     <message>
-        <source>Anisotropic tetrahedral meshes for injection molding. Apache License 2.0. Uses Qt, VTK, Open CASCADE, Netgen, Eigen and oneTBB.</source>
-        <translation>Maillages tétraédriques anisotropes pour le moulage par injection. Licence Apache 2.0. Utilise Qt, VTK, Open CASCADE, Netgen, Eigen et oneTBB.</translation>
-    </message>
-    <message>
         <source>Undo</source>
         <translation>Annuler</translation>
     </message>
@@ -2230,6 +2226,16 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
     <message>
         <source>&amp;Show the field</source>
         <translation>&amp;Afficher le champ</translation>
+    </message>
+    <message>
+        <source>The unit of all lengths; Preferences change it</source>
+        <translation>L’unité de toutes les longueurs ; les préférences la changent</translation>
+    </message>
+    <message>
+        <source>Anisotropic tetrahedral meshes for injection molding. Apache License 2.0.
+Made with %1.</source>
+        <translation>Maillages tétraédriques anisotropes pour le moulage par injection. Licence Apache 2.0.
+Réalisé avec %1.</translation>
     </message>
 </context>
 <context>

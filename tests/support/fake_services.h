@@ -45,7 +45,8 @@ inline std::shared_ptr<const MeshState> box_state(const Part& part, int iteratio
 
 /// The window's services with real parts and a made-up run of `iterations` steps of `step` each.
 struct FakeServices {
-  std::chrono::milliseconds step{60};
+  std::chrono::milliseconds step{10};
+  std::atomic<int> until = 1000;  // iterations that a run makes before it waits for more
   std::atomic<int> exports = 0;
   ExportOptions export_options{};  // of the last one
   std::atomic<bool> mesh_is_damaged = false;
@@ -66,6 +67,8 @@ struct FakeServices {
       Outcome outcome;
       const int last = study.options.iterations;
       for (int k = 0; k <= last; ++k) {
+        while (k >= until && !progress.cancelled())
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
         for (int s = 0; s < 10; ++s) {
           if (progress.cancelled()) break;
           std::this_thread::sleep_for(step / 10);

@@ -12,8 +12,8 @@
 #include "core/io/export_certificate.h"
 #include "core/io/msh.h"
 #include "core/study/study_file.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/ui/looks_apart.h"
+#include "tests/ui/window_fixture.h"
 #include "ui/actions/actions.h"
 #include "ui/main_window.h"
 #include "ui/session/forecaster.h"
@@ -25,7 +25,7 @@ namespace lamella::ui {
 namespace {
 
 bool wait_idle(Session& session) {
-  return QTest::qWaitFor([&] { return session.activity() == Activity::idle; }, 120000);
+  return QTest::qWaitFor([&] { return session.activity() == Activity::idle; }, patience);
 }
 
 /// What the walk opens: the real assembly where it lies beside the sources, else the sample plate
@@ -70,7 +70,7 @@ TEST(FirstUse, FromAnAssemblyToAnExportedMeshAndBack) {
   {
     MainWindow window(window_services(folder.path()));
     window.show();
-    ASSERT_TRUE(QTest::qWaitForWindowExposed(&window));
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&window, patience));
     Session& session = window.session();
     Actions& act = window.actions();
     for (std::size_t k = 0; k < walked.files.size(); ++k) {
@@ -113,7 +113,8 @@ TEST(FirstUse, FromAnAssemblyToAnExportedMeshAndBack) {
     QTest::mouseClick(view, Qt::LeftButton, {}, view->rect().center());
     ASSERT_EQ(session.study().sizing.size(), 1u);
     // What it costs is told before the run.
-    ASSERT_TRUE(QTest::qWaitFor([&] { return window.forecaster().bodies().has_value(); }, 60000));
+    ASSERT_TRUE(
+        QTest::qWaitFor([&] { return window.forecaster().bodies().has_value(); }, patience));
     EXPECT_GT(window.forecaster().total().nodes, 100);
 
     act[Act::run]->trigger();
@@ -150,7 +151,7 @@ TEST(FirstUse, FromAnAssemblyToAnExportedMeshAndBack) {
   }
   MainWindow window(window_services(folder.path()));
   window.show();
-  ASSERT_TRUE(QTest::qWaitForWindowExposed(&window));
+  ASSERT_TRUE(QTest::qWaitForWindowExposed(&window, patience));
   Session& session = window.session();
   window.open_files({QString::fromStdString((folder / "walk.lamella").string())});
   ASSERT_TRUE(wait_idle(session));
@@ -181,7 +182,7 @@ TEST(FirstUse, TheWindowAnswersWhileItMeshes) {
   MainWindow window(window_services(folder.path()));
   window.resize(1280, 800);
   window.show();
-  ASSERT_TRUE(QTest::qWaitForWindowExposed(&window));
+  ASSERT_TRUE(QTest::qWaitForWindowExposed(&window, patience));
   Session& session = window.session();
   window.open_files({QString::fromStdString((folder / "plate.step").string())});
   ASSERT_TRUE(wait_idle(session));

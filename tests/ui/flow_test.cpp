@@ -95,7 +95,7 @@ TEST_F(FlowTest, TheStrengthIsUndoneAndSaysWhatItComesTo) {
   EXPECT_TRUE(slider->isEnabled());
   window_.findChild<QDoubleSpinBox*>("flow_growth")->setValue(10);
   const auto counted = [&] {
-    EXPECT_TRUE(QTest::qWaitFor([&] { return panel->preview().has_value(); }, 20000));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return panel->preview().has_value(); }, patience));
     EXPECT_TRUE(window_.findChild<QLabel*>("flow_expected")->text().startsWith("About"));
     return panel->preview()->nodes_after;
   };

@@ -1,6 +1,7 @@
 #include <QAccessible>
 #include <QComboBox>
 #include <QDialog>
+#include <QLabel>
 #include <QLineEdit>
 #include <QPlainTextEdit>
 #include <QSettings>
@@ -40,26 +41,26 @@ class HabitsTest : public WindowFixture {
 
 TEST_F(HabitsTest, APausedRunStandsStillGoesOnAndCanBeCancelled) {
   open_part("plate");
-  fake_.step = std::chrono::milliseconds(150);
+  fake_.until = 1;
   EXPECT_FALSE(action(Act::pause)->isEnabled());
   double done = 0;
   QObject::connect(&session(), &Session::progressed, &window_, [&](double f) { done = f; });
   action(Act::run)->trigger();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !session().iterations().empty(); }, 10000));
+  ASSERT_TRUE(wait_iterations(1));
   action(Act::pause)->trigger();
   EXPECT_TRUE(session().paused());
   EXPECT_TRUE(action(Act::pause)->isChecked());
-  QTest::qWait(100);  // until it reports its progress
-  const std::size_t before = session().iterations().size();
+  fake_.until = 3;
+  QTest::qWait(100);  // until it reports its progress, which holds it
   const double done_before = done;
   picture("paused");
-  QTest::qWait(450);  // three steps, if it went on
-  EXPECT_EQ(session().iterations().size(), before);
+  QTest::qWait(100);  // several steps, if it went on
+  EXPECT_EQ(session().iterations().size(), 1u);
   EXPECT_EQ(done, done_before);
   EXPECT_EQ(session().activity(), Activity::running);
   action(Act::pause)->trigger();
   EXPECT_FALSE(session().paused());
-  ASSERT_TRUE(QTest::qWaitFor([&] { return session().iterations().size() > before; }, 10000));
+  ASSERT_TRUE(wait_iterations(3));
   action(Act::pause)->trigger();
   ASSERT_TRUE(session().paused());
   action(Act::cancel)->trigger();
@@ -68,7 +69,7 @@ TEST_F(HabitsTest, APausedRunStandsStillGoesOnAndCanBeCancelled) {
   EXPECT_LT(session().iterations().size(), 7u);
   EXPECT_FALSE(action(Act::pause)->isChecked());
   // The next run is not held.
-  fake_.step = std::chrono::milliseconds(10);
+  fake_.until = 1000;
   run();
   EXPECT_EQ(session().iterations().size(), 7u);
 }
@@ -148,6 +149,7 @@ TEST_F(HabitsTest, InchesAreShownAndTypedAndMillimetersKept) {
   Preferences preferences(&window_);
   preferences.findChild<QComboBox*>("unit")->setCurrentIndex(1);
   EXPECT_EQ(h_max->text(), "0.5 in");
+  EXPECT_EQ(find<QLabel>("unit")->text(), "in") << "the status bar says it";
   EXPECT_EQ(session().body(0).h_max, 12.7);
   EXPECT_TRUE(find<LengthBox>("h_min")->text().endsWith(" in"));
   h_max->findChild<QLineEdit*>()->setText("0.25 in");

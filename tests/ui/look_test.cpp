@@ -22,7 +22,7 @@ TEST_F(LookTest, WallsAreColoredByThicknessBeforeThereIsAMesh) {
   window_.view().set_color_by(ColorBy::thickness);
   const WallMap& walls = window_.view().walls();
   EXPECT_FALSE(window_.view().scene()->has(ColorBy::thickness));
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.maps().empty(); }, 30000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.maps().empty(); }, patience));
   QTest::qWait(50);
   ASSERT_TRUE(window_.view().scene()->has(ColorBy::thickness));
   const Legend legend = window_.view().scene()->legend();
@@ -46,7 +46,7 @@ TEST_F(LookTest, SizesAskedAreShownBeforeThereIsAMesh) {
   open_part("plate");
   window_.view().set_color_by(ColorBy::size);
   const WallMap& walls = window_.view().walls();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.maps().empty(); }, 30000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.maps().empty(); }, patience));
   const auto range = [](const WallMap::Maps& maps) {
     const auto& of = maps[0]->thickness;
     const auto [low, high] = std::minmax_element(of.begin(), of.end());
@@ -94,7 +94,7 @@ TEST_F(LookTest, AViewThatMovesIsDrawnCoarserAndWellAtRest) {
   QTest::keyClick(view(), Qt::Key_Plus);
   EXPECT_TRUE(view()->moving());
   // It comes to rest by itself.
-  EXPECT_TRUE(QTest::qWaitFor([&] { return !view()->moving(); }));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !view()->moving(); }, patience));
   const QImage at_rest = view()->grab().toImage();
   QTest::qWait(100);
   EXPECT_LT(difference(at_rest, view()->grab().toImage()), 1e-3);
@@ -106,14 +106,14 @@ TEST_F(LookTest, MeasuringWallsIsStoppedByEscapeAndByARun) {
   const WallMap& walls = window_.view().walls();
   ASSERT_TRUE(walls.busy());
   QTest::keyClick(&window_.view(), Qt::Key_Escape);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.busy(); }, 10000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.busy(); }, patience));
   EXPECT_TRUE(walls.maps().empty());
   EXPECT_FALSE(walls.status().isEmpty());
   window_.view().set_color_by(ColorBy::body);
   window_.view().set_color_by(ColorBy::thickness);
   ASSERT_TRUE(walls.busy());
   action(Act::run)->trigger();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.busy(); }, 10000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !walls.busy(); }, patience));
   ASSERT_TRUE(wait_idle());
   EXPECT_TRUE(walls.maps().empty());
 }
@@ -143,7 +143,7 @@ TEST_F(LookTest, TwoViewsShareCameraAndCutsAndShowDifferentIterations) {
   const QImage before = other->vtk_view()->grab().toImage();
   action(Act::view_top)->trigger();
   EXPECT_TRUE(QTest::qWaitFor(
-      [&] { return difference(before, other->vtk_view()->grab().toImage()) > 0.001; }));
+      [&] { return difference(before, other->vtk_view()->grab().toImage()) > 0.001; }, patience));
   const Vec<3> corner(40, 30, 2);
   const auto from_middle = [&](VtkView* v) { return v->project(corner).y() - v->height() / 2.0; };
   EXPECT_NEAR(from_middle(other->vtk_view()) / other->vtk_view()->height(),
@@ -176,7 +176,8 @@ TEST_F(LookTest, BodiesByFormulaAreMadeEditedRenamedAndUndone) {
   ASSERT_EQ(study().zones.size(), 1u);
   ASSERT_TRUE(study().domain.has_value());
   EXPECT_TRUE(session().can_run());
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !session().shapes()[0].surface.points.empty(); }));
+  ASSERT_TRUE(
+      QTest::qWaitFor([&] { return !session().shapes()[0].surface.points.empty(); }, patience));
   EXPECT_TRUE(window_.view().isVisible());
   find<LengthBox>("zone_radius")->setValue(3);
   const auto ball = [&] { return std::get<ZoneBall>(study().zones[0].shape); };
@@ -215,7 +216,8 @@ TEST_F(LookTest, BodiesByFormulaAreMadeEditedRenamedAndUndone) {
 TEST_F(LookTest, ABodyByFormulaIsMovedByItsKnob) {
   open_part("plate");
   action(Act::zone_ball)->trigger();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !session().shapes()[1].surface.points.empty(); }));
+  ASSERT_TRUE(
+      QTest::qWaitFor([&] { return !session().shapes()[1].surface.points.empty(); }, patience));
   QTest::qWait(100);
   const auto center = [&] { return std::get<ZoneBall>(study().zones[0].shape).center; };
   const Vec<3> before = center();

@@ -1,31 +1,21 @@
 #include "ui/main_window.h"
 
-#include <gtest/gtest.h>
-
 #include <QDropEvent>
 #include <QLabel>
 #include <QMimeData>
 #include <QPushButton>
-#include <QSignalSpy>
 #include <QSlider>
 #include <QSpinBox>
-#include <QTest>
 #include <QTreeView>
 #include <algorithm>
 #include <fstream>
 
-#include "core/cad/sample_parts.h"
 #include "core/study/study_file.h"
-#include "tests/support/fake_services.h"
-#include "tests/support/temporary_folder.h"
-#include "ui/actions/actions.h"
+#include "tests/ui/window_fixture.h"
 #include "ui/commands/study_edits.h"
 #include "ui/models/study_model.h"
 #include "ui/panels/banner.h"
 #include "ui/panels/length_box.h"
-#include "ui/session/session.h"
-#include "ui/views/model_view.h"
-#include "ui/views/vtk_view.h"
 
 namespace lamella::ui {
 namespace {
@@ -56,43 +46,14 @@ void write_box_stl(const std::filesystem::path& file, const Vec<3>& size) {
   out << "endsolid box\n";
 }
 
-class MainWindowTest : public testing::Test {
+class MainWindowTest : public WindowFixture {
  protected:
-  MainWindowTest() : window_(fake_.make()) {
-    write_box_stl(folder_ / "box.stl", {30, 20, 4});
-    window_.show();
-    EXPECT_TRUE(QTest::qWaitForWindowExposed(&window_));
-  }
-
-  Session& session() { return window_.session(); }
-  QAction* action(Act act) { return window_.actions()[act]; }
-
-  bool wait_idle() {
-    return QTest::qWaitFor([this] { return session().activity() == Activity::idle; }, 20000);
-  }
+  MainWindowTest() { write_box_stl(folder_ / "box.stl", {30, 20, 4}); }
 
   void open(const std::string& name) {
     window_.open_files({QString::fromStdString((folder_ / name).string())});
     ASSERT_TRUE(wait_idle());
   }
-
-  void run() {
-    action(Act::run)->trigger();
-    ASSERT_TRUE(wait_idle());
-  }
-
-  /// Share of the view's pixels that differ from `other`.
-  double difference(const QImage& a, const QImage& b) {
-    if (a.size() != b.size()) return 1;
-    int differing = 0;
-    for (int y = 0; y < a.height(); ++y)
-      for (int x = 0; x < a.width(); ++x) differing += a.pixel(x, y) != b.pixel(x, y);
-    return differing / (double(a.width()) * a.height());
-  }
-
-  test::TemporaryFolder folder_;
-  test::FakeServices fake_;
-  MainWindow window_;
 };
 
 TEST_F(MainWindowTest, EmptyWindowOffersToOpenAndNothingElse) {
@@ -151,7 +112,6 @@ TEST_F(MainWindowTest, MissingFileGivesABanner) {
 
 TEST_F(MainWindowTest, RunFillsTheConvergenceAndShowsTheLastMesh) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(20);
   run();
   EXPECT_EQ(session().iterations().size(), 7u);
   EXPECT_EQ(session().shown(), 6);
@@ -164,9 +124,9 @@ TEST_F(MainWindowTest, RunFillsTheConvergenceAndShowsTheLastMesh) {
 
 TEST_F(MainWindowTest, CancelKeepsTheBestMeshAndARunCanFollow) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(300);
+  fake_.until = 1;
   action(Act::run)->trigger();
-  ASSERT_TRUE(QTest::qWaitFor([this] { return !session().iterations().empty(); }, 10000));
+  ASSERT_TRUE(wait_iterations(1));
   EXPECT_EQ(session().activity(), Activity::running);
   EXPECT_FALSE(action(Act::run)->isEnabled());
   action(Act::cancel)->trigger();
@@ -174,7 +134,7 @@ TEST_F(MainWindowTest, CancelKeepsTheBestMeshAndARunCanFollow) {
   EXPECT_LT(session().iterations().size(), 7u);  // it did not go on to the end
   EXPECT_TRUE(session().outcome()->cancelled);
   EXPECT_NE(session().shown_state(), nullptr);
-  fake_.step = std::chrono::milliseconds(10);
+  fake_.until = 1000;
   run();
   EXPECT_EQ(session().iterations().size(), 7u);
   EXPECT_FALSE(session().outcome()->cancelled);
@@ -182,20 +142,22 @@ TEST_F(MainWindowTest, CancelKeepsTheBestMeshAndARunCanFollow) {
 
 TEST_F(MainWindowTest, LookingBackIsNotInterruptedByNewIterations) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(400);
+  fake_.until = 3;
   action(Act::run)->trigger();
-  ASSERT_TRUE(QTest::qWaitFor([this] { return session().iterations().size() > 2; }, 10000));
+  ASSERT_TRUE(wait_iterations(3));
   window_.findChild<QSlider*>("iteration_slider")->setValue(0);
-  const std::size_t before = session().iterations().size();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return session().iterations().size() > before; }, 10000));
+  fake_.until = 5;
+  ASSERT_TRUE(wait_iterations(5));
+  EXPECT_EQ(session().activity(), Activity::running);
   EXPECT_EQ(session().shown(), 0);
   EXPECT_EQ(session().shown_state(), session().iterations().front().state);
+  fake_.until = 1000;
   ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(session().shown(), 0);
 }
 
 TEST_F(MainWindowTest, SectionCutsTheMeshByWholeElements) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(10);
   run();
   const std::size_t whole = window_.view().scene()->shown_elements();
   EXPECT_EQ(whole, session().shown_state()->mesh.element_count());
@@ -218,7 +180,6 @@ TEST_F(MainWindowTest, SectionCutsTheMeshByWholeElements) {
 
 TEST_F(MainWindowTest, SectionCutsThroughElementsWhenAsked) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(10);
   run();
   // Between two planes of nodes: the plane cuts one slice of 17 x 8 cells, and each of the six
   // tetrahedra of a cell spans the whole cell in x.
@@ -252,7 +213,6 @@ TEST_F(MainWindowTest, SectionPlaneIsDraggedByItsKnob) {
 
 TEST_F(MainWindowTest, ColoringChangesThePictureAndBringsALegend) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(10);
   run();
   QTest::qWait(50);
   const QImage plain = window_.view().picture();
@@ -350,10 +310,9 @@ TEST_F(MainWindowTest, MeshSettingsReachTheStudyAndSayWhatAutomaticIs) {
 TEST_F(MainWindowTest, AnotherChordToleranceMeansOtherSurfacesWithTheNextRun) {
   ASSERT_TRUE(write_sample("curved_shell", folder_ / "shell.step"));
   open("shell.step");
-  fake_.step = std::chrono::milliseconds(10);
   const std::size_t before = session().parts()[0].surface.facets.size();
   const double error = session().parts()[0].chord_error;
-  window_.findChild<LengthBox*>("chord_tolerance")->setValue(session().automatic_size(0) / 5);
+  window_.findChild<LengthBox*>("chord_tolerance")->setValue(session().automatic_size(0) / 3);
   run();
   EXPECT_GT(session().parts()[0].surface.facets.size(), before);
   EXPECT_LT(session().parts()[0].chord_error, error);
@@ -400,7 +359,6 @@ TEST_F(MainWindowTest, LayersAreJudgedByWhatTheSelectedBodyAsks) {
   open("box.stl");
   window_.open_files({QString::fromStdString((folder_ / "box.stl").string())}, true);
   ASSERT_TRUE(wait_idle());
-  fake_.step = std::chrono::milliseconds(10);
   run();
   window_.view().set_color_by(ColorBy::layers);
   session().select(1);
@@ -412,7 +370,6 @@ TEST_F(MainWindowTest, LayersAreJudgedByWhatTheSelectedBodyAsks) {
 
 TEST_F(MainWindowTest, SettingsChangedAfterARunAreTold) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(10);
   run();
   EXPECT_FALSE(session().outdated());
   window_.findChild<QSpinBox*>("layers")->setValue(6);
@@ -491,11 +448,10 @@ TEST_F(MainWindowTest, APartThatComesBackIsAsFineAsTheOthers) {
   open("shell.step");
   window_.open_files({QString::fromStdString((folder_ / "box.stl").string())}, true);
   ASSERT_TRUE(wait_idle());
-  fake_.step = std::chrono::milliseconds(10);
   const auto triangles = [this] { return session().parts()[0].surface.facets.size(); };
   const std::size_t coarse = triangles();
   auto* chord = window_.findChild<LengthBox*>("chord_tolerance");
-  const double fine = session().automatic_size(0) / 5;
+  const double fine = session().automatic_size(0) / 3;
   session().remove_item({ItemKind::body, 0});
   chord->setValue(fine);
   run();
@@ -508,7 +464,6 @@ TEST_F(MainWindowTest, APartThatComesBackIsAsFineAsTheOthers) {
 
 TEST_F(MainWindowTest, ExportTellsSuccessAndFailure) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(10);
   run();
   QSignalSpy exported(&session(), &Session::exported);
   session().export_mesh(folder_ / "box.msh");
@@ -546,9 +501,9 @@ TEST_F(MainWindowTest, MeshFileIsShownWithoutParts) {
 
 TEST_F(MainWindowTest, ClosingDuringARunStopsIt) {
   open("box.stl");
-  fake_.step = std::chrono::milliseconds(400);
+  fake_.until = 1;  // it would never end
   action(Act::run)->trigger();
-  QTest::qWait(30);
+  ASSERT_TRUE(wait_iterations(1));
   window_.close();
   EXPECT_TRUE(wait_idle());
 }
@@ -559,7 +514,7 @@ TEST_F(MainWindowTest, StatesCanBePictured) {
   const QString part = qEnvironmentVariable("LAMELLA_PICTURED_PART",
                                             QString::fromStdString((folder_ / "box.stl").string()));
   const auto keep = [&](const char* name) {
-    QTest::qWait(200);
+    if (!to.isEmpty()) QTest::qWait(200);
     const QPixmap picture = window_.grab();
     EXPECT_EQ(picture.size(), window_.size() * window_.devicePixelRatio());
     if (to.isEmpty()) return;
@@ -569,10 +524,11 @@ TEST_F(MainWindowTest, StatesCanBePictured) {
   window_.open_files({part});
   ASSERT_TRUE(wait_idle());
   keep("part");
-  fake_.step = std::chrono::milliseconds(400);
+  fake_.until = 4;
   action(Act::run)->trigger();
-  ASSERT_TRUE(QTest::qWaitFor([this] { return session().iterations().size() > 3; }, 10000));
+  ASSERT_TRUE(wait_iterations(4));
   keep("running");
+  fake_.until = 1000;
   ASSERT_TRUE(wait_idle());
   action(Act::section)->setChecked(true);
   keep("section");

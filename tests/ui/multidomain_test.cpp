@@ -1,12 +1,8 @@
-#include <gtest/gtest.h>
-
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
-#include <QSignalSpy>
 #include <QTabWidget>
-#include <QTest>
 #include <QTextBrowser>
 #include <QTreeView>
 #include <numbers>
@@ -16,21 +12,15 @@
 #include "core/project/project_file.h"
 #include "core/study/study_file.h"
 #include "core/study/zone_surface.h"
-#include "tests/support/fake_services.h"
-#include "tests/support/temporary_folder.h"
-#include "ui/actions/actions.h"
+#include "tests/ui/window_fixture.h"
 #include "ui/commands/study_edits.h"
-#include "ui/main_window.h"
 #include "ui/models/study_model.h"
 #include "ui/panels/banner.h"
 #include "ui/panels/convergence_panel.h"
 #include "ui/panels/form.h"
 #include "ui/panels/report_panel.h"
 #include "ui/session/command_line.h"
-#include "ui/session/session.h"
-#include "ui/views/model_view.h"
 #include "ui/views/plot.h"
-#include "ui/views/vtk_view.h"
 
 namespace lamella::ui {
 namespace {
@@ -79,19 +69,16 @@ std::shared_ptr<const MeshState> split_state(const std::vector<BodySettings>& bo
 }
 
 /// A window with two boxes of 4 x 10 x 10 that leave 2 mm between them.
-class MultidomainTest : public testing::Test {
+class MultidomainTest : public WindowFixture {
  protected:
-  MultidomainTest() : window_(services()) {
+  MultidomainTest() : WindowFixture(split) {
     write_box(folder_ / "left.stl", {0, 0, 0}, {4, 10, 10});
     write_box(folder_ / "right.stl", {6, 0, 0}, {10, 10, 10});
-    window_.show();
-    EXPECT_TRUE(QTest::qWaitForWindowExposed(&window_));
     open({"left.stl", "right.stl"});
   }
 
   /// The run of every study is one iteration with the state of `split_state`.
-  Services services() {
-    Services made = fake_.make();
+  static Services split(Services made) {
     made.run = [](const Study& study, const auto&, const auto&, const Progress&,
                   const IterationSink& sink, const auto&) -> Result<Outcome> {
       Outcome outcome;
@@ -115,17 +102,7 @@ class MultidomainTest : public testing::Test {
     return made;
   }
 
-  Session& session() { return window_.session(); }
-  const Study& study() { return session().study(); }
-  QAction* action(Act act) { return window_.actions()[act]; }
-  template <class T>
-  T* find(const char* name) {
-    return window_.findChild<T*>(name);
-  }
   StudyModel* model() { return qobject_cast<StudyModel*>(find<QTreeView>("study")->model()); }
-  bool wait_idle() {
-    return QTest::qWaitFor([this] { return session().activity() == Activity::idle; }, 20000);
-  }
   /// Whatever there is unsaved goes.
   void open(const std::vector<std::string>& names) {
     bool add = false;
@@ -144,21 +121,12 @@ class MultidomainTest : public testing::Test {
     ASSERT_GE(index, 0) << combo;
     box->setCurrentIndex(index);
   }
-  void run() {
-    action(Act::run)->trigger();
-    ASSERT_TRUE(wait_idle());
-    QTest::qWait(50);
-  }
   /// The color that a point of the model has in the picture.
   QColor color_at(const Vec<3>& point) {
     const QImage picture = window_.view().picture();
     const QPointF at = window_.view().vtk_view()->project(point) * picture.devicePixelRatio();
     return picture.pixelColor(at.toPoint());
   }
-
-  test::TemporaryFolder folder_;
-  test::FakeServices fake_;
-  MainWindow window_;
 };
 
 double apart(const QColor& a, const QColor& b) {
@@ -408,7 +376,7 @@ TEST_F(MultidomainTest, BodiesByFormulaAreListedDrawnAndRemoved) {
   EXPECT_TRUE(action(Act::run)->isEnabled());
   EXPECT_TRUE(action(Act::save)->isEnabled());
   const auto volume = [&](std::size_t k) { return session().shapes()[k].cad_volume; };
-  ASSERT_TRUE(QTest::qWaitFor([&] { return volume(0) > 0; }, 5000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return volume(0) > 0; }, patience));
   EXPECT_NEAR(volume(0), 36 * std::numbers::pi, 0.02 * 36 * std::numbers::pi);
   EXPECT_NEAR(volume(1), 500, 1e-6) << "what has no end is cut by the domain";
   EXPECT_NEAR(window_.view().scene()->bounds()[1], 5, 1e-9);
@@ -418,7 +386,7 @@ TEST_F(MultidomainTest, BodiesByFormulaAreListedDrawnAndRemoved) {
   EXPECT_EQ(model()->rowCount(model()->section(ItemKind::body)), 2);
   action(Act::undo)->trigger();
   EXPECT_EQ(study().zones, balls.zones);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return volume(0) > 0; }, 5000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return volume(0) > 0; }, patience));
   session().save(folder_ / "again.lamella");
   ASSERT_TRUE(wait_idle());
   EXPECT_FALSE(session().modified());
@@ -440,10 +408,11 @@ TEST(MultidomainRun, TwoBallsAreMeshedSavedAndSeenAgain) {
   }
   ASSERT_TRUE(write_study(balls, folder / "balls.lamella"));
   MainWindow window(window_services(folder.path()));
+  window.resize(1200, 800);
   window.show();
   Session& session = window.session();
   const auto wait_idle = [&] {
-    return QTest::qWaitFor([&] { return session.activity() == Activity::idle; }, 60000);
+    return QTest::qWaitFor([&] { return session.activity() == Activity::idle; }, patience);
   };
   const auto file = QString::fromStdString((folder / "balls.lamella").string());
   window.open_files({file});

@@ -291,7 +291,7 @@ TEST_F(StudyItemsTest, WhatIsUnsavedSurvivesACrash) {
     std::error_code ec;
     return !std::filesystem::is_empty(folder, ec) && !ec;
   };
-  ASSERT_TRUE(QTest::qWaitFor(kept, 5000));
+  ASSERT_TRUE(QTest::qWaitFor(kept, patience));
   // This program still runs: nothing is left behind. One that is gone has left what it had.
   EXPECT_TRUE(recovery.left_behind().empty());
   for (const auto& entry : std::filesystem::directory_iterator(folder))

@@ -18,13 +18,17 @@
 
 namespace lamella::ui {
 
+/// ms after which what was waited for never comes, however busy the machine is.
+constexpr int patience = 300'000;
+
 /// A window with one of the sample parts, and runs that are made up.
 class WindowFixture : public testing::Test {
  protected:
-  WindowFixture() : window_(fake_.make()) {
-    fake_.step = std::chrono::milliseconds(10);
+  explicit WindowFixture(Services (*change)(Services) = [](Services made) { return made; })
+      : window_(change(fake_.make())) {
+    window_.resize(1200, 800);  // the processor draws it
     window_.show();
-    EXPECT_TRUE(QTest::qWaitForWindowExposed(&window_));
+    EXPECT_TRUE(QTest::qWaitForWindowExposed(&window_, patience));
   }
 
   void open_part(const std::string& name) {
@@ -45,8 +49,12 @@ class WindowFixture : public testing::Test {
     EXPECT_NE(widget, nullptr) << name;
     return widget;
   }
-  bool wait_idle(int milliseconds = 20000) {
-    return QTest::qWaitFor([this] { return session().activity() == Activity::idle; }, milliseconds);
+  bool wait_idle() {
+    return QTest::qWaitFor([this] { return session().activity() == Activity::idle; }, patience);
+  }
+  /// Until the run, which waits after them, has made so many iterations.
+  bool wait_iterations(std::size_t count) {
+    return QTest::qWaitFor([&] { return session().iterations().size() == count; }, patience);
   }
   void run() {
     action(Act::run)->trigger();

@@ -33,6 +33,7 @@ Palette::Palette(QWidget* parent) : QFrame(parent, Qt::Popup) {
   list_ = new QListWidget;
   list_->setObjectName("palette_list");
   list_->setFocusPolicy(Qt::NoFocus);
+  list_->setIconSize(QSize(20, 20));
   layout->addWidget(text_);
   layout->addWidget(list_);
   text_->installEventFilter(this);
@@ -54,6 +55,8 @@ void Palette::open(const std::vector<QAction*>& actions) {
 
 void Palette::narrow() {
   list_->clear();
+  QPixmap blank(list_->iconSize());  // titles stand in one column
+  blank.fill(Qt::transparent);
   const QStringList words = text_->text().split(' ', Qt::SkipEmptyParts);
   for (std::size_t k = 0; k < actions_.size(); ++k) {
     const QAction& action = *actions_[k];
@@ -61,8 +64,9 @@ void Palette::narrow() {
     // The tip often has the word that the title lacks.
     if (!has_all(title_of(action) + ' ' + action.toolTip(), words)) continue;
     const QString keys = action.shortcut().toString(QKeySequence::NativeText);
-    auto* item = new QListWidgetItem(
-        action.icon(), keys.isEmpty() ? title_of(action) : title_of(action) + "     " + keys);
+    auto* item =
+        new QListWidgetItem(action.icon().isNull() ? QIcon(blank) : action.icon(),
+                            keys.isEmpty() ? title_of(action) : title_of(action) + "     " + keys);
     item->setToolTip(action.toolTip());
     item->setData(Qt::UserRole, static_cast<int>(k));
     // What says it in its title comes before what only explains it so.

@@ -21,7 +21,7 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
   setObjectName("panel");
   auto* outer = new QVBoxLayout(this);
   outer->setContentsMargins(1, 1, 1, 1);
-  auto* scroll = new QScrollArea;
+  auto* scroll = new QScrollArea(this);
   scroll_ = scroll;
   scroll->setAccessibleName(tr("Settings"));
   scroll->setWidgetResizable(true);
@@ -30,18 +30,19 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
   outer->addWidget(scroll);
   content_ = new QWidget;
   content_->setObjectName("properties");
+  scroll->setWidget(content_);
   auto* layout = new QVBoxLayout(content_);
   layout->setContentsMargins(14, 10, 14, 12);
   layout->setSpacing(10);
-  pages_ = new QStackedWidget;
-  body_ = new BodyPage(session);
-  group_ = new GroupPage(session, actions);
-  sizing_ = new SizingPage(session, forecaster);
-  cut_ = new CutPage(session);
-  domain_ = new DomainPage(session);
+  pages_ = new QStackedWidget(content_);
+  body_ = new BodyPage(session, pages_);
+  group_ = new GroupPage(session, actions, pages_);
+  sizing_ = new SizingPage(session, forecaster, pages_);
+  cut_ = new CutPage(session, pages_);
+  domain_ = new DomainPage(session, pages_);
   for (QWidget* page : std::initializer_list<QWidget*>{body_, group_, sizing_, cut_, domain_})
     pages_->addWidget(page);
-  mesh_ = new MeshPage(session);
+  mesh_ = new MeshPage(session, content_);
   layout->addWidget(pages_, 1);
   empty_ = new QLabel(tr("The settings of what is selected appear here."));
   empty_->setObjectName("faint");
@@ -49,7 +50,6 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
   empty_->setWordWrap(true);
   outer->addWidget(empty_);
   layout->addWidget(mesh_);
-  scroll->setWidget(content_);
 
   connect(&session, &Session::parts_changed, this, &PropertiesPanel::refresh);
   connect(&session, &Session::surfaces_changed, this, &PropertiesPanel::refresh);

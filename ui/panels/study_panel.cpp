@@ -82,7 +82,7 @@ void StudyPanel::make_tree() {
   tree_->header()->setStretchLastSection(false);
   tree_->header()->setMinimumSectionSize(40);
   tree_->header()->setSectionResizeMode(StudyModel::name, QHeaderView::Stretch);
-  const std::pair<int, int> widths[] = {{StudyModel::value, 54}, {StudyModel::measured, 46}};
+  const std::pair<int, int> widths[] = {{StudyModel::value, 70}, {StudyModel::measured, 46}};
   for (const auto& [column, width] : widths) {
     tree_->header()->setSectionResizeMode(column, QHeaderView::Fixed);
     tree_->setColumnWidth(column, width);

@@ -44,7 +44,7 @@ Journal::~Journal() { file_.remove(); }
 
 void Journal::add(const QString& line) {
   if (!file_.isOpen()) return;
-  const QString time = QDateTime::currentDateTime().toString(Qt::ISODate);
+  const QString time = QDateTime::currentDateTime().toString("yyyy-MM-dd HH:mm:ss");
   file_.write((time + "  " + QString(line).replace('\n', ' ') + "\n").toUtf8());
   // What is not in the file yet a crash would take along.
   file_.flush();

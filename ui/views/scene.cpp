@@ -195,7 +195,7 @@ struct Scene::Impl {
     for (const Cut& cut : cuts) cut.mapper->RemoveAllInputs();
     update_visibility();
     if (!skins) {
-      mesh_mapper->RemoveAllInputs();
+      rehearse();
       draw_flow();
       recolor();
       return;
@@ -218,6 +218,16 @@ struct Scene::Impl {
     recolor();
   }
 
+  /// Draws a speck as a mesh is drawn. Programs for the graphics are translated where they are
+  /// first used, which is not to hold the window when a run brings its first mesh.
+  void rehearse() {
+    const Vec<3> middle(bounds[0] + bounds[1], bounds[2] + bounds[3], bounds[4] + bounds[5]);
+    mesh_mapper->SetInputData(speck(middle / 2));
+    mesh_mapper->ScalarVisibilityOn();
+    mesh_mapper->SetScalarModeToUseCellData();
+    mesh_mapper->SetColorModeToDirectScalars();
+  }
+
   /// The mesh, or something coarser while there is no time for all of it.
   void show_mesh() {
     const bool on = state != nullptr;
@@ -233,7 +243,7 @@ struct Scene::Impl {
       coarse_mapper->SetInputData(coarse);
     }
     coarse_actor->SetVisibility(fast);
-    mesh_actor->SetVisibility(on && !fast);
+    mesh_actor->SetVisibility(on ? !fast : !parts.empty());
     mesh_actor->GetProperty()->SetEdgeVisibility(edges && !sees_lines() && !fast);
   }
 
@@ -484,7 +494,7 @@ std::optional<Picked> Scene::pick(double x, double y) const {
   picker->PickFromListOn();
   for (const PartActors& part : impl_->parts)
     if (part.surface->GetVisibility()) picker->AddPickList(part.surface);
-  if (impl_->mesh_actor->GetVisibility()) picker->AddPickList(impl_->mesh_actor);
+  if (impl_->state && impl_->mesh_actor->GetVisibility()) picker->AddPickList(impl_->mesh_actor);
   for (const Cut& cut : impl_->cuts)
     if (cut.actor->GetVisibility()) picker->AddPickList(cut.actor);
   if (!picker->Pick(x, y, 0, &impl_->renderer) || picker->GetCellId() < 0) return {};

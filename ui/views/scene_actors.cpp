@@ -69,6 +69,20 @@ void add_lights(vtkRenderer& renderer) {
   }
 }
 
+vtkSmartPointer<vtkPolyData> speck(const Vec<3>& at) {
+  constexpr vtkIdType corners[] = {0, 1, 2};
+  vtkNew<vtkCellArray> cells;
+  cells->InsertNextCell(3, corners);
+  vtkNew<vtkUnsignedCharArray> rgb;
+  rgb->SetNumberOfComponents(3);
+  for (int k = 0; k < 3; ++k) rgb->InsertNextValue(255);
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(make_points({at, at, at}));
+  data->SetPolys(cells);
+  data->GetCellData()->SetScalars(rgb);
+  return data;
+}
+
 PartActors part_actors(const Part& part, const QColor& color) {
   PartActors actors;
   actors.name = part.name;

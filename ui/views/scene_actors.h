@@ -31,6 +31,8 @@ struct PartActors {
   std::shared_ptr<const ThicknessMap> wall_map;
   vtkSmartPointer<vtkActor> features;
 };
+/// A triangle without area, with a color of its own.
+vtkSmartPointer<vtkPolyData> speck(const Vec<3>& at);
 PartActors part_actors(const Part& part, const QColor& color);
 /// The wall thickness of the part; null takes it away.
 void set_walls(PartActors& part, std::shared_ptr<const ThicknessMap> map);

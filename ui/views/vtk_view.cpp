@@ -49,6 +49,7 @@ struct VtkView::Vtk {
   vtkNew<vtkRenderer> renderer;
   vtkMTimeType drawn = 0;
   bool drawn_well = false;
+  bool rehearsed = false;
   int width = 1, height = 1;  // of the widget, device pixels
 
   /// The picture has that share of the widget's pixels along a side.
@@ -153,6 +154,7 @@ void VtkView::initializeGL() {
   const QByteArray device(name ? name : "");
   software_ = device.contains("llvmpipe") || device.contains("softpipe");
   vtk_->drawn = 0;
+  vtk_->rehearsed = false;
   vtk_->window->SetMultiSamples(software_ ? 0 : 8);
   vtk_->window->SetForceMaximumHardwareLineWidth(1);
   vtk_->window->SetReadyForRendering(true);
@@ -198,6 +200,12 @@ void VtkView::paintGL() {
   gl->glDrawBuffers(1, &target);
   gl->glDisable(GL_SCISSOR_TEST);
   const int* drawn = vtk_->window->GetSize();
+  if (software_ && !vtk_->rehearsed) {
+    // What enlarges a fast picture is translated at its first use, which is not to be in a run.
+    vtk_->window->BlitDisplayFramebuffer(0, 0, 0, drawn[0] / 2, drawn[1] / 2, 0, 0, vtk_->width,
+                                         vtk_->height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    vtk_->rehearsed = true;
+  }
   vtk_->window->BlitDisplayFramebuffer(0, 0, 0, drawn[0], drawn[1], 0, 0, vtk_->width, vtk_->height,
                                        GL_COLOR_BUFFER_BIT, GL_LINEAR);
   // The window is opaque: what VTK left in alpha would let the desktop shine through.

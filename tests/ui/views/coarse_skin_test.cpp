@@ -96,7 +96,7 @@ TEST(CoarseSkin, IsWhatASceneShowsWhileItMoves) {
   Scene scene(*view.renderer());
   view.resize(480, 300);
   view.show();
-  ASSERT_TRUE(QTest::qWaitForWindowExposed(&view));
+  ASSERT_TRUE(QTest::qWaitForWindowExposed(&view, patience));
   const auto state = block();
   scene.set_mesh(state);
   scene.set_color_by(ColorBy::quality, 4, "");
