@@ -1,6 +1,7 @@
 #include "core/multidomain/hold.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lamella {
 
@@ -51,6 +52,14 @@ std::optional<Vec<3>> Hold::settle(const Partition<3>& partition, Vec<3> x,
     x -= step;
   }
   return std::nullopt;
+}
+
+Vec<3> onto_borders(const Partition<3>& partition, int zones, Vec<3> x, double reach) {
+  for (int k = 0; k < zones; ++k) {
+    const ZoneDistance<3> d = partition.zone(k).within(x, reach);
+    if (std::abs(d.distance) <= reach) x -= d.distance * d.normal;
+  }
+  return x;
 }
 
 }  // namespace lamella

@@ -21,4 +21,7 @@ struct Hold {
   std::optional<Vec<3>> settle(const Partition<3>& partition, Vec<3> x, double tolerance) const;
 };
 
+/// The point, on the borders of the first `zones` zones where they are as near as `reach` mm.
+Vec<3> onto_borders(const Partition<3>& partition, int zones, Vec<3> x, double reach);
+
 }  // namespace lamella

@@ -35,10 +35,9 @@ constexpr double chain_share = 0.2;
 constexpr double crease_of_chords = 8;
 /// Of the tolerance: borders of two zones this near to each other become one.
 constexpr double shared_share = 0.5;
-/// Rounds of looking for edges that cross a border.
-constexpr int split_rounds = 12;
-/// Rounds of looking for elements that a border passes through, and of the tolerance: how deep.
-constexpr int pierced_rounds = 12;
+/// Rounds of looking for edges that cross a border, for elements that it passes through, and of
+/// the tolerance: how deep.
+constexpr int split_rounds = 12, pierced_rounds = 12;
 constexpr double pierced_share = 0.8;
 /// The least barycentric weight of a node there.
 constexpr double least_weight = 0.08;
@@ -79,7 +78,6 @@ class Cutter {
     return fit().bend(progress.portion(0.9, 1));
   }
 
-  /// Nothing when it was cancelled.
   std::optional<CutMesh> result(const SimplexMesh<3>& original, const Progress& progress) const {
     CutMesh out;
     SimplexMesh<3>& mesh = out.mesh;
@@ -127,9 +125,8 @@ class Cutter {
     return true;
   }
 
-  /// Where several borders meet, all nodes of an element may lie on each, and none of the regions
-  /// there may have claimed it. Such islands of another region go to the neighbors with whom they
-  /// share most.
+  /// Where several borders meet, elements with all nodes on them may be claimed by none of the
+  /// regions there: such islands go to the neighbors with whom they share most.
   bool give_slivers_away(const std::vector<FaceUse<3>>& uses, SimplexMesh<3>& mesh,
                          const Progress& progress) const {
     std::vector<std::array<std::int32_t, 4>> beside(mesh.elements.size(), {-1, -1, -1, -1});
@@ -221,6 +218,9 @@ class Cutter {
     return true;
   }
 
+  Vec<3> shared(const Vec<3>& x) const {
+    return onto_borders(partition_, zone_, x, shared_share * params_.tolerance);
+  }
   bool follow_features(const ReferenceSurface<3>& surface, const Progress& progress) {
     double deep = params_.tolerance;
     if (!params_.chord_error.empty())
@@ -230,13 +230,14 @@ class Cutter {
         feature_chains(with_creases(surface, deep), chain_share * params_.tolerance);
     for (std::int32_t c : surface.corners) {
       if (progress.cancelled()) return false;
-      if (reachable(surface.points[c])) place(surface.points[c]);
+      const Vec<3> x = shared(surface.points[c]);
+      if (reachable(x)) place(x);
     }
     for (std::size_t i = 0; i < chains.size(); ++i) {
       NodeId reached = 0;
       for (std::size_t k = 0; k + 1 < chains[i].size(); ++k) {
         if (progress.cancelled()) return false;
-        reached = follow(chains[i][k], chains[i][k + 1], reached);
+        reached = follow(shared(chains[i][k]), shared(chains[i][k + 1]), reached);
       }
       progress.report(static_cast<double>(i + 1) / static_cast<double>(chains.size()));
     }
@@ -252,8 +253,8 @@ class Cutter {
     return mesh_.bring_node(*e, w, x);
   }
 
-  /// Makes the segment a chain of mesh edges, as far as it is reachable. `from`: the node at p, if
-  /// the segment before has reached it. Returns the node at q, or 0.
+  /// Makes the segment a chain of edges as far as it is reachable; `from`: the node at p, or 0, and
+  /// returned that at q.
   NodeId follow(const Vec<3>& p, const Vec<3>& q, NodeId from) {
     constexpr int samples = 16;
     int next = 0;
@@ -283,8 +284,7 @@ class Cutter {
     }
   }
 
-  /// Goes from a node towards x, making mesh edges of the way, until there or where the way leaves
-  /// what is left of the background.
+  /// Goes from a node towards x, making edges of the way, as far as the background reaches.
   std::pair<NodeId, bool> walk(NodeId from, const Vec<3>& x) {
     NodeId now = from;
     for (int step = 0; step < 4000; ++step) {

@@ -402,6 +402,24 @@ TEST(ExactInterface, TellsWhatIsWrong) {
   EXPECT_EQ(cancelled.error().code, Code::cancelled);
 }
 
+TEST(ExactInterface, ASlitThinnerThanTheToleranceCloses) {
+  Case c;
+  const double slit = 0.3 * c.tolerance;
+  c.add_box("large", {0.2, 0.2, 0.2}, {0.5, 0.8, 0.8}, 0.3 * 0.6 * 0.6);
+  c.add_box("small", {0.5 + slit, 0.3, 0.35}, {0.8, 0.7, 0.7}, (0.3 - slit) * 0.4 * 0.35);
+  const Exact exact = made_exact(c);
+  ASSERT_TRUE(validate(exact.mesh).ok());
+  for (int k = 0; k < 2; ++k)
+    EXPECT_NEAR(test::volumes(exact.mesh)[k], c.volumes[k], slit * 0.4 * 0.35) << k;
+  // They share the face between them.
+  double shared = 0;
+  for (std::size_t f = 0; f < exact.mesh.facets.size(); ++f)
+    if (exact.mesh.groups[exact.mesh.facet_group[f]] == "large|small")
+      shared += 0.5 * facet_normal<3>(exact.mesh.corners(exact.mesh.facets[f])).norm();
+  EXPECT_GT(shared, 0.9 * 0.4 * 0.35);
+  EXPECT_LT(shared, 1.001 * 0.4 * 0.35);
+}
+
 TEST(BalanceBorders, ABallKeepsItsVolume) {
   const Case c = ball_in_box();
   const Exact exact = made_exact(c);
