@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/cli_commands.h"
+#include "core/base/overloaded.h"
 
 namespace {
 
@@ -26,11 +27,6 @@ std::string command_line(int argc, char** argv) {
   }
   return line;
 }
-
-template <class... Cases>
-struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
 
 }  // namespace
 

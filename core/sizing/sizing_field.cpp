@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/base/overloaded.h"
 #include "core/geometry/locator.h"
 #include "core/metric/analytic.h"
 #include "core/metric/intersect.h"
@@ -17,11 +18,6 @@ constexpr double kRounding = 1e-9;
 /// The best elements have a little less than a layer each: asked for by this much finer, the poor
 /// places of a boundary layer have the layers too.
 constexpr double kFinerLayers = 1.13;
-
-template <class... Cases>
-struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
 
 double distance_to_box(const Box<3>& box, const Vec<3>& x) {
   return (box.lo - x).cwiseMax(x - box.hi).cwiseMax(0.0).norm();

@@ -218,7 +218,7 @@ std::string pictures(const Report& r) {
 std::string overlaps(const Report& r) {
   if (!r.outcome.overlaps) return {};
   const auto& [names, found] = *r.outcome.overlaps;
-  const auto pair = [&](int first, int second) {
+  const auto pair = [&names = names](int first, int second) {
     return cell(escaped(names[static_cast<std::size_t>(first)] + " and " +
                         names[static_cast<std::size_t>(second)]),
                 true);

@@ -1,13 +1,10 @@
 #include "core/study/zone_entry.h"
 
+#include "core/base/overloaded.h"
+
 namespace lamella {
 
 namespace {
-
-template <class... Cases>
-struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
 
 ZonePtr<3> cell_among(const ZoneCell& cell, const std::vector<StudyZone>& all) {
   std::vector<Vec<3>> seeds{cell.seed};
