@@ -66,11 +66,11 @@ struct Adapted {
 
 /// Algorithm 3.1: the mesh whose elements are unit and equilateral under `metric`; the input is
 /// left untouched. With `metric_at`, which is asked wherever a node goes, `metric` is its values at
-/// the nodes of the mesh, or empty. Boundary facets keep their group and CAD face; nodes of the boundary stay on
-/// `surface` within the chord tolerance (without a surface: on the boundary of the input). Faces
-/// between bodies that the input lists as facets are held in the same way, on the facets of
-/// `surface` that have their CAD faces; those that it does not list, to what they are in the input.
-/// A cancel returns the valid mesh reached so far, with `cancelled` set in its report.
+/// the nodes of the mesh, or empty. Boundary facets keep their group and CAD face; nodes of the
+/// boundary stay on `surface` within the chord tolerance (without a surface: on the boundary of the
+/// input). Faces between bodies that the input lists as facets are held in the same way, on the
+/// facets of `surface` that have their CAD faces; those that it does not list, to what they are in
+/// the input. A cancel returns the valid mesh reached so far, with `cancelled` set in its report.
 /// Errors: bad_input (metric size or mesh invalid), memory (the limit would be exceeded).
 template <int D>
 Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metric,

@@ -523,9 +523,8 @@ void Session::run() {
   const bool again = surfaces_differ_ || params.chord_tolerance != read_with_.chord_tolerance;
   begin(
       Activity::running,
-      [this, study = study_, parts = parts_, sources = sources_, params,
-       again, copies = project_.copies,
-       known = result_](const Progress& whole) mutable -> Worker::Done {
+      [this, study = study_, parts = parts_, sources = sources_, params, again,
+       copies = project_.copies, known = result_](const Progress& whole) mutable -> Worker::Done {
         // What is missing is told before the work.
         const auto field = solver_field_of(services_, *study, copies, known, whole.portion(0, 0));
         if (!field)
