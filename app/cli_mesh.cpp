@@ -74,6 +74,9 @@ Result<Request> request_of(const MeshCommand& c, Console& console) {
     request.study.dropped = c.drop;
   }
   if (c.interfaces) o.interfaces = *c.interfaces == "fuzzy" ? Interfaces::fuzzy : Interfaces::exact;
+  if (c.capture && o.interfaces == Interfaces::exact)
+    return Error{Code::usage, "--capture is for fuzzy borders: exact ones are cut.",
+                 "Add --interfaces fuzzy, or leave it out."};
   if (c.capture) o.capture = *c.capture == "gradient" ? Capture::gradient : Capture::distance;
   Result<std::vector<SizingObject>> sizing = sizing_of(c);
   if (!sizing) return sizing.error();

@@ -395,7 +395,8 @@ void add_domain(CLI::App* m, MeshCommand& mesh) {
       ->option_text("NAME")
       ->check(CLI::IsMember({"exact", "fuzzy"}));
   m->add_option("--interface-size", mesh.interface_size,
-                "Size across borders, mm [a quarter of the layer there]")
+                "Size across borders, mm [fuzzy: a quarter of the layer there; exact: the natural "
+                "size]")
       ->option_text("X")
       ->check(CLI::PositiveNumber);
   m->add_option("--drop", mesh.drop,

@@ -231,6 +231,32 @@ inline Float4 smaller(Float4 a, Float4 b) { return a < b ? a : b; }
 inline Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
 inline Float4 all(float v) { return Float4{v, v, v, v}; }
 
+/// Squared distances of a point to four boxes, `bound[lower, upper][axis]`, rounded down. `c` is
+/// the point and the boxes are seen from the center.
+template <int D>
+class BoxDistance {
+ public:
+  explicit BoxDistance(const Vec<D>& c) {
+    const double slack = c.cwiseAbs().maxCoeff() * 0x1p-22;
+    for (int a = 0; a < D; ++a) {
+      above_[a] = all(static_cast<float>(c[a] + slack));
+      below_[a] = all(static_cast<float>(c[a] - slack));
+    }
+  }
+  Float4 to(const float (&bound)[2][D][4]) const {
+    Float4 d2 = all(0);
+    for (int a = 0; a < D; ++a) {
+      const Float4 out =
+          larger(larger(load(bound[0][a]) - above_[a], below_[a] - load(bound[1][a])), all(0));
+      d2 += out * out;
+    }
+    return d2;
+  }
+
+ private:
+  Float4 above_[D], below_[D];
+};
+
 struct Entry {
   float key;
   std::int32_t ref;
@@ -262,13 +288,7 @@ template <class Visit>
 void Bvh<D>::near(Ref root, const Vec<D>& x, double& bound2, Visit&& visit) const {
   using namespace bvh_detail;
   if (root == kNothing) return;
-  const Vec<D> c = x - center_;
-  const double slack = c.cwiseAbs().maxCoeff() * 0x1p-22;
-  Float4 above[D], below[D];
-  for (int a = 0; a < D; ++a) {
-    above[a] = all(static_cast<float>(c[a] + slack));
-    below[a] = all(static_cast<float>(c[a] - slack));
-  }
+  const BoxDistance<D> distance(x - center_);
   const auto bound = [&] { return static_cast<float>(std::min(bound2, 1e38)) * 1.000002f; };
 
   Entry stack[kStack];
@@ -282,13 +302,7 @@ void Bvh<D>::near(Ref root, const Vec<D>& x, double& bound2, Visit&& visit) cons
       continue;
     }
     const Node& node = nodes_[e.ref];
-    Float4 d2 = all(0);
-    for (int a = 0; a < D; ++a) {
-      const Float4 out = larger(
-          larger(load(node.bound[0][a]) - above[a], below[a] - load(node.bound[1][a])), all(0));
-      d2 += out * out;
-    }
-    top = push(stack, top, d2, node.child, bound());
+    top = push(stack, top, distance.to(node.bound), node.child, bound());
   }
 }
 

@@ -89,34 +89,6 @@ struct RayTest<2> {
   }
 };
 
-/// Squared distances of a point to the boxes of a block's facets, rounded down.
-template <int D>
-class BoxTest {
- public:
-  BoxTest(const Vec<D>& x, const Vec<D>& center) {
-    const Vec<D> c = x - center;
-    const double slack = c.cwiseAbs().maxCoeff() * 0x1p-22;
-    for (int a = 0; a < D; ++a) {
-      above_[a] = bvh_detail::all(static_cast<float>(c[a] + slack));
-      below_[a] = bvh_detail::all(static_cast<float>(c[a] - slack));
-    }
-  }
-  template <class Block>
-  bvh_detail::Float4 operator()(const Block& block) const {
-    using namespace bvh_detail;
-    Float4 d2 = all(0);
-    for (int a = 0; a < D; ++a) {
-      const Float4 out = larger(
-          larger(load(block.bound[0][a]) - above_[a], below_[a] - load(block.bound[1][a])), all(0));
-      d2 += out * out;
-    }
-    return d2;
-  }
-
- private:
-  bvh_detail::Float4 above_[D], below_[D];
-};
-
 }  // namespace
 
 template <int D>
@@ -263,10 +235,10 @@ struct Locator<D>::Impl {
   /// which it may lower.
   template <class Visit>
   void near(typename Bvh<D>::Ref from, const Vec<D>& x, double& bound2, Visit&& visit) const {
-    const BoxTest<D> boxes(x, center);
+    const bvh_detail::BoxDistance<D> boxes(x - center);
     bvh.near(from, x, bound2, [&](std::int32_t b) {
       const Block& block = blocks[b];
-      const bvh_detail::Float4 least = boxes(block);
+      const bvh_detail::Float4 least = boxes.to(block.bound);
       for (int k = 0; k < 4; ++k) {
         if (!(least[k] < static_cast<float>(std::min(bound2, 1e38)) * 1.000002f)) continue;
         std::array<Vec<D>, D> p;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -50,14 +49,14 @@ std::size_t balance_borders(SimplexMesh<3>& mesh, const Partition<3>& partition,
     }
   }
   std::vector<char> rough(facets.size());
-  const bool complete = parallel_each(facets.size(), threads, progress, [&](std::size_t i) {
+  const auto find_rough = [&](std::size_t i) {
     const auto p = mesh.corners(mesh.facets[facets[i]]);
     const Vec<3> normal = facet_normal<3>(p).normalized();
     const Zone<3>& zone = partition.zone(zone_of(facets[i]));
     for (const Vec<3>& x : p)
       rough[i] |= std::abs(zone.at(x).normal.dot(normal)) < smooth_turn ? 1 : 0;
-  });
-  if (!complete) return 0;
+  };
+  if (!parallel_each(facets.size(), threads, progress.portion(0, 0.25), find_rough)) return 0;
   for (std::size_t i = 0; i < facets.size(); ++i)
     if (rough[i])
       for (NodeId n : mesh.facets[facets[i]]) shares[n].moves = false;
@@ -65,13 +64,15 @@ std::size_t balance_borders(SimplexMesh<3>& mesh, const Partition<3>& partition,
   const std::vector<Vec<3>> before = mesh.points;
   std::vector<double> depth(facets.size());  // mean signed distance of a facet
   for (int round = 0; round < rounds; ++round) {
-    parallel_each(facets.size(), threads, {}, [&](std::size_t i) {
+    const Progress own = progress.portion(0.25 * (round + 1), 0.25 * (round + 2));
+    const auto distances = [&](std::size_t i) {
       const auto p = mesh.corners(mesh.facets[facets[i]]);
       const Zone<3>& zone = partition.zone(zone_of(facets[i]));
       depth[i] = 0;
       for (const auto& w : middles)
         depth[i] += zone.distance(w[0] * p[0] + w[1] * p[1] + w[2] * p[2]) / 3;
-    });
+    };
+    if (!parallel_each(facets.size(), threads, own, distances)) break;
     for (NodeShare& s : shares) s.area = s.missing = 0;
     for (std::size_t i = 0; i < facets.size(); ++i) {
       const auto& nodes = mesh.facets[facets[i]];

@@ -315,8 +315,10 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   out.surface =
       Finish(fuzzy, partition, surfaces, *cut, cut_params.tolerance, adapt_params.feature_angle)
           .run(params.wall, out.first_face);
-  Result<Adapted<3>> adapted = adapt<3>(cut->mesh, cut->metric, &out.surface, adapt_params,
-                                        progress.portion(0.5, 1), chords_at);
+  // The cut has moved nodes: their metric is asked again.
+  Result<Adapted<3>> adapted =
+      adapt<3>(cut->mesh, chords_at ? MetricField<3>{} : cut->metric, &out.surface, adapt_params,
+               progress.portion(0.5, 1), chords_at);
   if (!adapted) return adapted.error();
   out.mesh = std::move(adapted->mesh);
   out.metric = std::move(adapted->metric);

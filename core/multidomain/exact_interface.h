@@ -30,19 +30,19 @@ struct Exact {
   std::size_t snapped = 0;               ///< nodes moved onto borders
   std::size_t added = 0;                 ///< nodes added on borders
   std::size_t lost = 0;                  ///< pieces of feature edges that could not be followed
-  /// What the borders' curves and details ask for, at the chord tolerance.
+  /// What the borders' curves and details ask for, at a share of the chord tolerance.
   std::shared_ptr<const ChordField> chords;
   AdaptReport adapt;
 };
 
-/// From a mesh of the domain (one body) that is fine around the borders between regions to a
-/// conforming mesh of the regions: sizes along the borders are made small enough for the chord
-/// tolerance (chord_metric.h), then it is cut along the borders (interface_cut.h), then adapted to
-/// the metric with the interfaces held on `surfaces` within the chord tolerance. `surfaces`: the
-/// boundary of each region's zone, without the background; what a region without facets cuts out is
-/// its surface itself. Boundary nodes move in the boundary only. A cancel during the last adaption
-/// returns the valid mesh reached so far, with `adapt.cancelled` set. Errors: bad_input (sizes of
-/// arrays, no elements), cancelled, memory.
+/// From any mesh of the domain (one body) to a conforming mesh of the regions: it is adapted to the
+/// metric, with sizes along the borders small enough for the chord tolerance (chord_metric.h), once
+/// or twice, then cut along the borders (interface_cut.h), then adapted again with the interfaces
+/// held on `surfaces` within the chord tolerance. `metric` may be empty where there is `metric_at`.
+/// `surfaces`: the boundary of each region's zone, without the background; what a region without
+/// facets cuts out is its surface itself. Boundary nodes move in the boundary only. A cancel during
+/// the last adaption returns the valid mesh reached so far, with `adapt.cancelled` set. Errors:
+/// bad_input (sizes of arrays, no elements), cancelled, memory.
 Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>& metric,
                                const Partition<3>& partition,
                                const std::vector<ReferenceSurface<3>>& surfaces,

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/mesh/interfaces.h"
@@ -144,7 +145,8 @@ class AssemblyLoop {
 
   /// Closes the books, the figures with a finer division at the borders than in the loop.
   Result<std::vector<BodyOutcome>> finish(const Progress& progress) {
-    if (exact_) balance();
+    if (exact_)
+      if (Result<void> balanced = balance(progress); !balanced) return balanced.error();
     for (std::size_t m = 0; exact_ && m < of_.members.size(); ++m) {
       if (of_.body_of[m] < 0) continue;
       const Member& member = of_.members[m];
@@ -184,12 +186,25 @@ class AssemblyLoop {
   }
 
   /// The last touch to exact borders: what was adapted again would go back onto them.
-  void balance() {
-    SimplexMesh<3> mesh = current_.mesh;
-    if (balance_borders(mesh, *of_.partition, first_face_, kOffBorder * of_.mesh_tolerance,
-                        options_.threads) > 0 &&
-        validate<3>(mesh).ok())
-      current_.mesh = std::move(mesh);
+  /// Qualities are those of the mesh that is handed out. Errors: cancelled.
+  Result<void> balance(const Progress& progress) {
+    if (std::exchange(balanced_, true)) return {};
+    MeshState state = current_;
+    const std::size_t moved =
+        balance_borders(state.mesh, *of_.partition, first_face_, kOffBorder * of_.mesh_tolerance,
+                        options_.threads, progress);
+    if (moved == 0 || !validate<3>(state.mesh).ok()) return {};
+    const Result<IterationRecord> measured = measure(state, progress);
+    if (!measured) return measured.error();
+    IterationRecord& last = records_.back();
+    last.volume = measured->volume;
+    last.quality_mean = measured->quality_mean;
+    last.quality_min = measured->quality_min;
+    last.conformity = measured->conformity;
+    last.unit_edges = measured->unit_edges;
+    for (BodyOutcome& body : of_.outcomes) body.records.back() = last;
+    current_ = std::move(state);
+    return {};
   }
 
   bool flows(std::size_t m) const {
@@ -560,7 +575,7 @@ class AssemblyLoop {
   MetricFunction<3> at_borders_;              ///< natural, and what is asked across exact borders
   MeshState current_;
   std::vector<IterationRecord> records_;
-  bool settled_ = false, failed_ = false;
+  bool settled_ = false, failed_ = false, balanced_ = false;
 };
 
 }  // namespace
@@ -620,6 +635,7 @@ Result<Outcome> run_assembly(const Study& study, const std::vector<Part>& parts,
   }
   outcome.bodies = std::move(*closed);
   outcome.state = std::make_shared<const MeshState>(loop.current());
+  outcome.records.back() = loop.last_record();
   outcome.overlaps = loop.overlaps();
   outcome.converged = !outcome.cancelled && loop.converged();
   outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();

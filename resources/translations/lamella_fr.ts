@@ -628,6 +628,10 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <source>Flow through a body</source>
         <translation>Écoulement à travers un corps</translation>
     </message>
+    <message>
+        <source>auto: as the layers</source>
+        <translation>auto : comme les couches</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::CompareView</name>

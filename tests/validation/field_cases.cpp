@@ -70,18 +70,6 @@ Study study_of() {
   return study;
 }
 
-Study refined(double factor) {
-  Study study = study_of();
-  SizingObject all;
-  all.name = "all";
-  SizeCorrection scaled;
-  scaled.factor = factor;
-  scaled.keep_directions = true;
-  all.asks = scaled;
-  study.sizing.push_back(all);
-  return study;
-}
-
 Study corrected(FlowMethod method, double growth, int rounds) {
   Study study = study_of();
   study.flow.emplace();
@@ -136,7 +124,7 @@ Result<void> regenerate(const std::filesystem::path& docs,
     table += line;
   };
   for (const double factor : {1.0, 0.8, 0.63, 0.5, 0.35}) {
-    Result<Made> mesh = made(factor == 1 ? study_of() : refined(factor));
+    Result<Made> mesh = made(factor == 1 ? study_of() : refined(study_of(), factor));
     if (!mesh) return mesh.error();
     row(factor == 1 ? "natural" : "sizes x " + short_number(factor, 2), *mesh, false);
     uniform.push_back(std::move(*mesh));
@@ -154,7 +142,7 @@ Result<void> regenerate(const std::filesystem::path& docs,
   double factor = 1;
   for (std::size_t k = 0; k + 1 < uniform.size(); ++k)
     if (uniform[k].elements < drawn->elements) factor = k == 0 ? 0.9 : k == 1 ? 0.72 : 0.56;
-  const Result<Made> even = made(refined(factor));
+  const Result<Made> even = made(refined(study_of(), factor));
   if (!even) return even.error();
   std::vector<SimplexMesh<2>> sections;
   std::vector<std::string> captions;

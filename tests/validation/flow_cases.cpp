@@ -83,19 +83,6 @@ Result<Outcome> made(const FlowProblem& problem, const Study& study) {
               std::shared_ptr<const VolumeMesher>(netgen_mesher())});
 }
 
-/// All sizes of the natural metric times `factor`.
-Study refined(const FlowProblem& problem, double factor) {
-  Study study = study_of(problem);
-  SizingObject all;
-  all.name = "all";
-  SizeCorrection scaled;
-  scaled.factor = factor;
-  scaled.keep_directions = true;
-  all.asks = scaled;
-  study.sizing.push_back(all);
-  return study;
-}
-
 Study corrected_by(const FlowProblem& problem, FlowMethod method) {
   Study study = study_of(problem);
   study.flow->rounds = 1;
@@ -303,7 +290,7 @@ Result<void> draw_crossing(const std::filesystem::path& pictures) {
   if (!corrected) return corrected.error();
   const Result<Outcome> by_default = made(problem, corrected_by(problem, StudyFlow{}.method));
   if (!by_default) return by_default.error();
-  const Result<Outcome> fine = made(problem, refined(problem, 0.63));
+  const Result<Outcome> fine = made(problem, refined(study_of(problem), 0.63));
   if (!fine) return fine.error();
   const Vec<2> low(-6, -6), high(6, 6);
   std::vector<SimplexMesh<2>> sections;
@@ -350,7 +337,7 @@ Result<std::string> table_of(const FlowProblem& problem) {
   std::vector<std::string> titles;
   for (const double factor : {1.0, 0.8, 0.63, 0.5, 0.35, 0.25}) {
     const Result<Outcome> mesh =
-        made(problem, factor == 1 ? study_of(problem) : refined(problem, factor));
+        made(problem, factor == 1 ? study_of(problem) : refined(study_of(problem), factor));
     if (!mesh) return mesh.error();
     uniform.push_back(point_of(*mesh));
     std::fprintf(stderr, "%s %g: %.0f nodes, rate %.6g, %zu iterations\n", problem.name.c_str(),

@@ -29,6 +29,18 @@ inline Result<Outcome> run_case(const std::vector<Part>& parts, int iterations, 
              {}, sink);
 }
 
+/// All sizes of the natural metric times `factor`.
+inline Study refined(Study study, double factor) {
+  SizingObject all;
+  all.name = "all";
+  SizeCorrection scaled;
+  scaled.factor = factor;
+  scaled.keep_directions = true;
+  all.asks = scaled;
+  study.sizing.push_back(all);
+  return study;
+}
+
 /// A part of flat or finely tessellated faces, all at their exact place.
 inline Part part_of(const std::string& name, ReferenceSurface<3> surface) {
   Part part;

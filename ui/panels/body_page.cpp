@@ -211,7 +211,9 @@ void BodyPage::show_automatic() {
                         low);
   h_max_->set_automatic(tr("no bound"), 200 * low);
   // A run has found out what automatic means.
-  QString automatic = tr("auto: 1/4 of a layer");
+  QString automatic = session_.study().options.interfaces == Interfaces::fuzzy
+                          ? tr("auto: 1/4 of a layer")
+                          : tr("auto: as the layers");
   double start = low;
   const auto& outcome = session_.outcome();
   if (outcome && session_.selection().size() == 1)

@@ -30,9 +30,13 @@ TEST(Pierced, NothingPassesThroughOneSide) {
   EXPECT_FALSE(pierced_at(*half, tetrahedron, phi, 1e-9).has_value());
 }
 
-TEST(Pierced, TheDeepestPointTellsTheSide) {
+TEST(Pierced, TheMeanDepthTellsTheSide) {
   EXPECT_LT(depth_in(*half_space_zone<3>(Vec<3>(1, 0, 0), 2), tetrahedron).mean, 0);
   EXPECT_GT(depth_in(*half_space_zone<3>(Vec<3>(1, 0, 0), 0.1), tetrahedron).mean, 0);
+  const DepthIn in = depth_in(*half_space_zone<3>(Vec<3>(1, 0, 0), 1), tetrahedron);
+  EXPECT_NEAR(in.mean, 0, 1e-12);  // the centroid lies at x = 1
+  EXPECT_GT(in.most, 0.2);
+  EXPECT_LT(in.most, 3);
 }
 
 }  // namespace
