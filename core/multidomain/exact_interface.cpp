@@ -9,6 +9,8 @@
 #include "core/geometry/soup.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/boundary.h"
+#include "core/mesh/element_locator.h"
+#include "core/mesh/quality.h"
 #include "core/multidomain/chord_metric.h"
 #include "core/multidomain/hold.h"
 #include "core/multidomain/interface_cut.h"
@@ -29,6 +31,13 @@ constexpr double finer_share = 1.5;
 /// along it grow.
 constexpr double chord_share = 0.6;
 constexpr double chord_growth = 0.7;
+/// Quality below which the background is refined and cut again, to this share of the sizes, how
+/// often (less where that gains nothing twice), and the share of poor elements that is too many for
+/// it.
+constexpr double poor_quality = 0.2;
+constexpr double recut_size = 0.6;
+constexpr int recuts = 5;
+constexpr double many_poor = 0.01;
 
 std::int32_t face_count(const std::vector<std::int32_t>& facet_face) {
   std::int32_t faces = 0;
@@ -237,6 +246,120 @@ class Finish {
   std::vector<Edge> sides_;  ///< [facet behind the outer ones] regions, the lower first
 };
 
+struct Ball {
+  Vec<3> center;
+  double radius;
+};
+
+/// c(T) of the elements in the metric they were adapted to.
+double quality_in(const Exact& made, std::size_t e) {
+  const auto& nodes = made.mesh.elements[e];
+  return quality<3>(made.mesh.corners(nodes), mean_metric<3>(made.metric, nodes));
+}
+
+/// By what poor elements fall short, all together.
+double shortage(const Exact& made) {
+  double sum = 0;
+  for (std::size_t e = 0; e < made.mesh.elements.size(); ++e)
+    sum += std::max(0.0, poor_quality - quality_in(made, e));
+  return sum;
+}
+
+/// Around the elements that the cut has left too poor to be mended.
+std::vector<Ball> poor_places(const Exact& made) {
+  std::vector<Ball> poor;
+  for (std::size_t e = 0; e < made.mesh.elements.size(); ++e) {
+    if (quality_in(made, e) >= poor_quality) continue;
+    const Corners<3> p = made.mesh.corners(made.mesh.elements[e]);
+    const Vec<3> center = (p[0] + p[1] + p[2] + p[3]) / 4;
+    double radius = 0;
+    for (const Vec<3>& x : p) radius = std::max(radius, (x - center).norm());
+    poor.push_back({center, radius});
+  }
+  return poor;
+}
+
+/// What one mesh of the domain is cut with, as often as it takes.
+struct Cutting {
+  const Partition<3>& partition;
+  const std::vector<ReferenceSurface<3>>& surfaces;
+  const CutParams& cut_params;
+  const AdaptParams& adapt_params;
+  const ReferenceSurface<3>* wall;
+  const MetricFunction<3>& metric_at;  ///< may be empty
+
+  /// The mesh cut along the borders, and adapted with them held, in the metric of its nodes: what
+  /// the cut has spoiled shows, and no place is asked.
+  Result<Exact> cut(const Adapted<3>& background, const Progress& progress) const {
+    Result<CutMesh> cut = cut_interfaces(background.mesh, background.metric, partition, surfaces,
+                                         cut_params, progress.portion(0, 0.3), {});
+    if (!cut) return cut.error();
+    Exact out;
+    out.snapped = cut->snapped;
+    out.added = cut->added;
+    out.lost = cut->lost;
+    out.surface = Finish(background.mesh, partition, surfaces, *cut, cut_params.tolerance,
+                         adapt_params.feature_angle)
+                      .run(wall, out.first_face);
+    return held(std::move(out), cut->mesh, cut->metric, {}, progress.portion(0.3, 1));
+  }
+
+  /// Adapts a mesh that was cut, its interfaces held on `out.surface`.
+  Result<Exact> held(Exact out, const SimplexMesh<3>& mesh, const MetricField<3>& metric,
+                     const MetricFunction<3>& asked_at, const Progress& progress) const {
+    Result<Adapted<3>> adapted =
+        adapt<3>(mesh, metric, &out.surface, adapt_params, progress, asked_at);
+    if (!adapted) return adapted.error();
+    out.mesh = std::move(adapted->mesh);
+    out.metric = std::move(adapted->metric);
+    out.adapt = adapted->report;
+    return out;
+  }
+
+  /// Adapts the background anew at these places, to smaller sizes, and leaves the rest as it is.
+  Result<void> refine(Adapted<3>& background, const std::vector<Ball>& places,
+                      const Progress& progress) const {
+    const auto finer = [&](const Vec<3>& x) {
+      double most = 1;
+      for (const Ball& b : places) {
+        const double out = (x - b.center).norm() / b.radius - 1;  // radii out of the ball
+        most = std::max(most, 1 + (1 / recut_size - 1) * std::clamp(1 - out, 0.0, 1.0));
+      }
+      return most * most;
+    };
+    SimplexMesh<3> mesh = background.mesh;
+    MetricField<3> metric = background.metric;
+    std::vector<char> near(mesh.points.size(), 0);
+    if (!parallel_each(mesh.node_count(), adapt_params.threads, progress.portion(0, 0.2),
+                       [&](std::size_t i) {
+                         const double share = finer(mesh.points[i + 1]);
+                         near[i + 1] = share > 1;
+                         metric[i + 1] *= share;
+                       }))
+      return cancelled_error();
+    // Where elements are larger than what is poor none of their nodes may be near.
+    const ElementLocator<3> locator(mesh);
+    for (const Ball& b : places)
+      for (NodeId n : mesh.elements[locator.locate(b.center).element]) near[n] = 1;
+    AdaptParams local = adapt_params;
+    mesh.bodies = {"near", "held"};
+    local.frozen_bodies = {1};
+    for (std::size_t e = 0; e < mesh.elements.size(); ++e)
+      mesh.element_body[e] = std::none_of(mesh.elements[e].begin(), mesh.elements[e].end(),
+                                          [&](NodeId n) { return near[n] != 0; });
+    MetricFunction<3> finer_at;
+    if (metric_at) finer_at = [&](const Vec<3>& x) -> Metric<3> { return metric_at(x) * finer(x); };
+    Result<Adapted<3>> made =
+        adapt<3>(mesh, metric, wall, local, progress.portion(0.2, 1), finer_at);
+    if (!made) return made.error();
+    if (made->report.cancelled) return cancelled_error();
+    made->mesh.bodies = background.mesh.bodies;
+    std::fill(made->mesh.element_body.begin(), made->mesh.element_body.end(), 0);
+    background = std::move(*made);
+    return {};
+  }
+};
+
 }  // namespace
 
 Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>& metric,
@@ -302,28 +425,39 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
     refined = std::move(*r);
     if (static_cast<double>(refined->mesh.node_count()) < grown * before) break;
   }
-  const SimplexMesh<3>& fuzzy = refined ? refined->mesh : whole;
-  const MetricField<3>& fuzzy_metric = refined ? refined->metric : chords;
-  Result<CutMesh> cut = cut_interfaces(fuzzy, fuzzy_metric, partition, surfaces, cut_params,
-                                       progress.portion(0.4, 0.5), chords_at);
-  if (!cut) return cut.error();
-  Exact out;
-  out.chords = field;
-  out.snapped = cut->snapped;
-  out.added = cut->added;
-  out.lost = cut->lost;
-  out.surface =
-      Finish(fuzzy, partition, surfaces, *cut, cut_params.tolerance, adapt_params.feature_angle)
-          .run(params.wall, out.first_face);
-  // The cut has moved nodes: their metric is asked again.
-  Result<Adapted<3>> adapted =
-      adapt<3>(cut->mesh, chords_at ? MetricField<3>{} : cut->metric, &out.surface, adapt_params,
-               progress.portion(0.5, 1), chords_at);
-  if (!adapted) return adapted.error();
-  out.mesh = std::move(adapted->mesh);
-  out.metric = std::move(adapted->metric);
-  out.adapt = adapted->report;
-  return out;
+  Adapted<3> background;
+  if (refined) {
+    background = std::move(*refined);
+  } else {
+    background.mesh = std::move(whole);
+    background.metric = std::move(chords);
+  }
+  const Cutting cutting{partition, surfaces, cut_params, adapt_params, params.wall, chords_at};
+  Result<Exact> best = cutting.cut(background, progress.portion(0.4, 0.5));
+  for (int i = 0, idle = 0; best && !best->adapt.cancelled && i < recuts && idle < 2; ++i) {
+    const Progress again = progress.portion(0.5 + 0.25 * i / recuts, 0.5 + 0.25 * (i + 1) / recuts);
+    const std::vector<Ball> poor = poor_places(*best);
+    if (poor.empty() || static_cast<double>(poor.size()) >
+                            many_poor * static_cast<double>(best->mesh.elements.size()))
+      break;
+    const Result<void> ready = cutting.refine(background, poor, again.portion(0, 0.2));
+    Result<Exact> next = ready ? cutting.cut(background, again.portion(0.2, 1)) : ready.error();
+    if (!next && next.error().code != Code::cancelled) break;
+    best->adapt.cancelled = !next || next->adapt.cancelled;
+    if (best->adapt.cancelled) break;
+    const bool better = shortage(*next) < shortage(*best);
+    idle = better ? 0 : idle + 1;
+    if (better) best = std::move(next);
+  }
+  if (!best) return best.error();
+  if (!best->adapt.cancelled && chords_at) {
+    const SimplexMesh<3> cut = std::move(best->mesh);
+    best = cutting.held(std::move(*best), cut, {}, chords_at, progress.portion(0.75, 1));
+    if (!best) return best.error();
+  }
+  best->chords = field;
+  progress.report(1);
+  return best;
 }
 
 }  // namespace lamella

@@ -5,9 +5,10 @@
 namespace lamella {
 namespace {
 
-constexpr double kSkin = 1e-4;      // of the diagonal: a start this deep is inside
-constexpr double kContact = 1.1;    // of the radius: facets as near as this are touched
-constexpr double kDistinct = 0.9;   // cosine above which two contacts are one
+constexpr double kSkin = 1e-4;     // of the diagonal: a start this deep is inside
+constexpr double kContact = 1.1;   // of the radius: facets as near as this are touched
+constexpr double kDistinct = 0.9;  // cosine above which two contacts are one
+constexpr double kFoot = 0.999;    // cosine to the normal above which a contact is inside its facet
 constexpr double kOpposite = 0.26;  // hull nearer than this: medial, or a wedge under 30 degrees
 constexpr double kGrowth = 0.3;     // of the ideal growth of the radius that a step must reach
 constexpr double kFacing = -0.95;   // cosine below which two contacts face each other
@@ -147,8 +148,12 @@ MedialBall climb(const Locator<3>& surface, const Start& start) {
     Contacts contacts;
     contacts.add(ball.center, touch);
     for (const auto f : known) {
+      // At its edges another facet may be nearer, and touch in another direction.
       const auto n = surface.nearest_on_facet(ball.center, f);
-      if (n.distance2 <= kContact * kContact * touch.distance2) contacts.add(ball.center, n);
+      const double below = surface.normal(f).dot(n.point - ball.center);
+      if (n.distance2 <= kContact * kContact * touch.distance2 &&
+          below * below >= kFoot * kFoot * n.distance2)
+        contacts.add(ball.center, n);
     }
     Vec<3> g = smallest_in_hull(contacts.away);
     ball.across = contacts.across();

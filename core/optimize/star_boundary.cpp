@@ -11,6 +11,8 @@ namespace {
 constexpr double facet_turn = 0.8;
 /// A facet must not look away from the surface it stands for.
 constexpr double surface_turn = 0.4;
+/// Of the tolerance: nodes that are as near to a feature are on it.
+constexpr double near_share = 0.1;
 
 }  // namespace
 
@@ -25,14 +27,15 @@ bool StarOptimizer<D>::node_site(NodeId s, BoundarySite& site) {
   if constexpr (D == 2)
     return ring_.size() == 2 && !model_.hard(ring_[0].tags[0], ring_[1].tags[0]);
   if constexpr (D == 3) {
-    int features = 0;
+    std::size_t features = 0;
     for (const auto& r : ring_) {
       if (r.count == 2 && !model_.hard(r.tags[0], r.tags[1])) continue;
-      if (features < 2) site.ends[features] = r.node;
-      ++features;
+      if (features == site.ends.size()) return false;
+      site.ends[features++] = r.node;
     }
     site.on_feature = features == 2;
-    return features == 0 || features == 2;
+    site.stray = features != 0 && features != 2;
+    return true;
   }
   return true;
 }
@@ -79,6 +82,16 @@ void StarOptimizer<D>::collect_ring(NodeId s) {
       }
     }
   }
+}
+
+/// Whether a stray node may join v: a feature goes on from where it was broken off, and features
+/// that meet beside their corner meet there.
+template <int D>
+bool StarOptimizer<D>::takes_stray(NodeId v, const BoundarySite& site) const {
+  if (site.ends[1] != 0)
+    return fixed_[v] && (topo_.points[v] - site.anchor).norm() <= model_.tolerance();
+  return v != site.ends[0] &&
+         model_.nearest_feature(topo_.points[v], near_share * model_.tolerance());
 }
 
 template <int D>
@@ -211,13 +224,15 @@ bool StarOptimizer<D>::keeps_vertices(const Apex& apex, const BoundarySite& site
     }
     if (site.ends[0] == 0) return true;
     // The old feature edges; of an edge that is split, itself.
-    const Vec<D>&a = topo_.points[site.ends[0]], &b = topo_.points[site.ends[1]];
-    const Vec<D> lowest = a.cwiseMin(b).cwiseMin(site.anchor);
-    const Vec<D> highest = a.cwiseMax(b).cwiseMax(site.anchor);
-    model_.feature_vertices_in(lowest - around, highest + around, vertices_);
+    lo = hi = site.anchor;
+    for (NodeId n : site.ends)
+      if (n != 0) include(topo_.points[n]);
+    model_.feature_vertices_in(lo - around, hi + around, vertices_);
     const auto near_line = [&](const Vec<D>& middle, const Vec<D>& x) {
-      return (foot_on_segment<D>(a, middle, x).point - x).squaredNorm() <= tol2 ||
-             (foot_on_segment<D>(middle, b, x).point - x).squaredNorm() <= tol2;
+      return std::any_of(site.ends.begin(), site.ends.end(), [&](NodeId n) {
+        return n != 0 &&
+               (foot_on_segment<D>(topo_.points[n], middle, x).point - x).squaredNorm() <= tol2;
+      });
     };
     for (const Vec<D>& x : vertices_)
       if (!near_line(apex.point, x) && near_line(site.anchor, x)) return false;
@@ -273,7 +288,7 @@ bool StarOptimizer<D>::boundary_within(const Apex& apex, const BoundarySite& sit
   if (D == 4 && site.b == 0 && !borders_allow(apex, site)) return false;
   const std::size_t count = virtual_faces_.size();
   retag_.resize(count);
-  bool flat = true, one_tag = true, planar = true;
+  bool flat = !site.stray, one_tag = true, planar = true;
   for (std::size_t i = 0; i < count; ++i) {
     retag_[i] = topo_.label[virtual_faces_[i].element];
     one_tag = one_tag && retag_[i] == retag_[0];
@@ -286,7 +301,7 @@ bool StarOptimizer<D>::boundary_within(const Apex& apex, const BoundarySite& sit
     // one side of the line may vanish.
     double off2 = std::numeric_limits<double>::infinity();
     for (NodeId n : site.ends) {
-      if (n == apex.node) continue;
+      if (n == 0 || n == apex.node) continue;
       const Vec<D> e = topo_.points[n] - apex.point;
       const double t = std::clamp((anchor - apex.point).dot(e) / e.squaredNorm(), 0.0, 1.0);
       off2 = std::min(off2, (anchor - apex.point - t * e).squaredNorm());
@@ -354,7 +369,7 @@ bool StarOptimizer<D>::boundary_within(const Apex& apex, const BoundarySite& sit
   }
   if (!flat && ends)
     for (NodeId n : site.ends)
-      if (n != apex.node &&
+      if (n != 0 && n != apex.node &&
           !model_.nearest_feature(0.5 * (apex.point + topo_.points[n]), feature_limit))
         return false;
   return true;
@@ -391,6 +406,7 @@ bool StarOptimizer<D>::topology_allows(const Apex& apex, const BoundarySite& sit
 #define LAMELLA_INSTANTIATE(D)                                                                    \
   template bool StarOptimizer<D>::node_site(NodeId, BoundarySite&);                               \
   template bool StarOptimizer<D>::edge_site(NodeId, NodeId, BoundarySite&);                       \
+  template bool StarOptimizer<D>::takes_stray(NodeId, const BoundarySite&) const;                 \
   template std::optional<Vec<D>> StarOptimizer<D>::point_on_boundary(const Vec<D>&, bool, double) \
       const;                                                                                      \
   template int StarOptimizer<D>::free_directions(const BoundarySite&, Mat<D>&) const;             \

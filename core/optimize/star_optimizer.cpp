@@ -356,10 +356,10 @@ bool StarOptimizer<D>::process_node(NodeId s) {
     join(site.ends[0]);
     join(site.ends[1]);
   } else {
-    for (const auto& r : ring_) join(r.node);
+    for (const auto& r : ring_)
+      if (!site.stray || takes_stray(r.node, site)) join(r.node);
   }
-  const bool joins = found_;
-  if (!joins || sweep_.criterion == Criterion::order) offer_moves(s, site);
+  if (!site.stray && (!found_ || sweep_.criterion == Criterion::order)) offer_moves(s, site);
   if (!found_) return false;
   replace_cavity(best_apex_, best_apex_.node == 0 ? s : 0);
   release_if_unused(s);

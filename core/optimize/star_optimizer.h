@@ -69,9 +69,12 @@ class StarOptimizer {
   /// What the boundary says of a cavity.
   struct BoundarySite {
     bool boundary = false, on_feature = false;
-    Vec<D> anchor;                   ///< the point that is removed
+    Vec<D> anchor;  ///< the point that is removed
+    /// Where a feature of the mesh ends that is none of the surface's to end there, or meets
+    /// others beside their corner: the node may only join another.
+    bool stray = false;
     const Vec<D>* second = nullptr;  ///< of an edge that is no feature: its other end
-    NodeId ends[2] = {0, 0};         ///< the neighbors along the feature
+    std::array<NodeId, 4> ends{};    ///< the neighbors along features, then 0
     NodeId a = 0, b = 0;             ///< node or edge that is removed
   };
 
@@ -117,6 +120,7 @@ class StarOptimizer {
   double feature_deviation(const BoundarySite& site) const;
   bool topology_allows(const Apex& apex, const BoundarySite& site) const;
   void collect_ring(NodeId s);
+  bool takes_stray(NodeId v, const BoundarySite& site) const;
   std::optional<Vec<D>> point_on_boundary(const Vec<D>& x, bool on_feature, double reach) const;
   int free_directions(const BoundarySite& site, Mat<D>& basis) const;
 
