@@ -54,6 +54,51 @@ TEST(MedialBall, IsInsideAndTouches) {
   }
 }
 
+/// A plate along x whose end is cut by a cylinder, in strips of `step` radians: thin below.
+ReferenceSurface<3> scooped_plate(double step, double length) {
+  constexpr double radius = 5.24, height = 4;
+  std::vector<Vec<2>> profile{{20, 2.5}, {20, 5}, {radius * std::cos(0.19), 5}};
+  for (double angle = 0.19 - step; angle > -std::asin(height / radius); angle -= step)
+    profile.emplace_back(radius * std::cos(angle), height + radius * std::sin(angle));
+  profile.emplace_back(std::sqrt(radius * radius - height * height), 0);
+  profile.emplace_back(20, 0);
+  ReferenceSurface<3> s;
+  s.faces.resize(1);
+  const auto n = static_cast<std::int32_t>(profile.size());
+  for (const double x : {0.0, length})
+    for (const Vec<2>& p : profile) s.points.emplace_back(x, p[0], p[1]);
+  for (std::int32_t i = 0; i < n; ++i) {
+    const std::int32_t j = (i + 1) % n;
+    s.facets.push_back({i, j, n + j});
+    s.facets.push_back({i, n + j, n + i});
+    if (i == 0 || j == 0) continue;
+    s.facets.push_back({0, j, i});
+    s.facets.push_back({n, n + i, n + j});
+  }
+  s.facet_face.assign(s.facets.size(), 0);
+  return s;
+}
+
+TEST(MedialBall, IsTheSameAllAlongAPrism) {
+  constexpr double length = 40;
+  std::mt19937 rng(4);
+  std::uniform_real_distribution<double> u(0, 1);
+  for (const double step : {0.2, 0.3, 0.45}) {
+    const auto s = scooped_plate(step, length);
+    const Locator<3> locator(s);
+    for (int i = 0; i < 400; ++i) {
+      const double angle = -0.86 + u(rng);
+      const Vec<3> wall{0, 5.24 * std::cos(angle), 4 + 5.24 * std::sin(angle)};
+      const Vec<3> foot = locator.nearest(wall + Vec<3>(length / 2, 0, 0))->point;
+      const double radius = climb_to_medial_ball(locator, foot).radius;
+      for (int k = 0; k < 4; ++k) {
+        const Vec<3> x = foot + Vec<3>(length * (0.5 * u(rng) - 0.25), 0, 0);
+        EXPECT_NEAR(climb_to_medial_ball(locator, x).radius, radius, 0.1 * radius);
+      }
+    }
+  }
+}
+
 /// A T in (x, z), along y: a plate of thickness `plate` under a rib of thickness `rib`.
 ReferenceSurface<3> tee(double plate, double rib) {
   return cell_surface(
