@@ -37,7 +37,7 @@ constexpr double chord_growth = 0.7;
 constexpr double poor_quality = 0.2;
 constexpr double recut_size = 0.6;
 constexpr int recuts = 5;
-constexpr double many_poor = 0.01;
+constexpr double many_poor = 0.03;
 
 std::int32_t face_count(const std::vector<std::int32_t>& facet_face) {
   std::int32_t faces = 0;

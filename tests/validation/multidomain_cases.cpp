@@ -152,13 +152,13 @@ double volume_error(const std::vector<BodyOutcome>& bodies) {
   return worst;
 }
 
-Result<std::string> fuzzy_row(const Scene& scene, double& nodes) {
+Result<std::string> fuzzy_row(const Scene& scene, double exact_nodes) {
   Result<Outcome> outcome = made(scene, Interfaces::fuzzy, kLast, false);
   if (!outcome) return outcome.error();
   const auto& records = outcome->records;
   const auto at = [&](std::size_t i) { return records[std::min(i, records.size() - 1)]; };
   const double before = static_cast<double>(at(kFirst).nodes);
-  nodes = static_cast<double>(at(kLast).nodes);
+  const auto nodes = static_cast<double>(at(kLast).nodes);
   std::size_t settled = records.size() - 1;  // the error is within 3 % of its end from there on
   while (settled > 0 &&
          std::abs(records[settled - 1].interface_error / records.back().interface_error - 1) < 0.03)
@@ -166,16 +166,16 @@ Result<std::string> fuzzy_row(const Scene& scene, double& nodes) {
   Result<Assembly> laid = lay_out(scene.study, scene.parts,
                                   {std::shared_ptr<const VolumeMesher>(topological_mesher())}, {});
   if (!laid) return laid.error();
-  return "| " + scene.name + " | " + number(nodes, 6) + " | " +
-         number(100 * (nodes / before - 1), 2) + " % | " + number(at(1).interface_error) + " / " +
-         number(at(kLast).interface_error) + " | " + std::to_string(settled) + " | " +
+  return "| " + scene.name + " | " + number(nodes, 6) + " | " + number(nodes / exact_nodes, 2) +
+         " | " + number(100 * (nodes / before - 1), 2) + " % | " + number(at(1).interface_error) +
+         " / " + number(at(kLast).interface_error) + " | " + std::to_string(settled) + " | " +
          number(volume_error(outcome->bodies), 2) + " % | " +
          number(turn_of_elements(*outcome->state, *laid->partition), 2) + " | " +
          number(records.back().quality_mean) + " / " + number(records.back().quality_min, 2) +
          " |\n";
 }
 
-Result<std::string> exact_row(const Scene& scene, double fuzzy_nodes, const fs::path& meshes) {
+Result<std::string> exact_row(const Scene& scene, const fs::path& meshes, double& nodes) {
   Result<Outcome> outcome = made(scene, Interfaces::exact, kFirst, true);
   if (!outcome) return outcome.error();
   const MeshState& state = *outcome->state;
@@ -193,13 +193,13 @@ Result<std::string> exact_row(const Scene& scene, double fuzzy_nodes, const fs::
   const Result<ExportCertificate> written =
       write_mesh_file(own_formats().front(), state.mesh, fields, meshes / (file + ".msh"));
   if (!written) return written.error();
-  return "| " + scene.name + " | " + number(static_cast<double>(last.nodes), 6) + " | " +
-         number(fuzzy_nodes / static_cast<double>(last.nodes), 2) + " | " +
-         std::to_string(last.iteration) + " | " + number(outcome->seconds, 2) + " | " +
-         number(last.layers.mean) + " / " + number(last.layers.p5) + " | " +
-         number(volume_error(outcome->bodies), 2) + " % | " + number(off, 2) + " | " +
-         number(last.quality_mean) + " / " + number(last.quality_min, 2) + " | " +
-         std::to_string(poor) + " of " + std::to_string(state.mesh.elements.size()) + " |\n";
+  nodes = static_cast<double>(last.nodes);
+  return "| " + scene.name + " | " + number(nodes, 6) + " | " + std::to_string(last.iteration) +
+         " | " + number(outcome->seconds, 2) + " | " + number(last.layers.mean) + " / " +
+         number(last.layers.p5) + " | " + number(volume_error(outcome->bodies), 2) + " % | " +
+         number(off, 2) + " | " + number(last.quality_mean) + " / " + number(last.quality_min, 2) +
+         " | " + std::to_string(poor) + " of " + std::to_string(state.mesh.elements.size()) +
+         " |\n";
 }
 
 Result<std::vector<Scene>> scenes(const std::optional<fs::path>& cad) {
@@ -245,27 +245,28 @@ Result<void> regenerate(const fs::path& folder, const std::optional<fs::path>& c
   if (!all) return all.error();
   const fs::path meshes = fs::temp_directory_path() / "lamella_multidomain";
   fs::create_directories(meshes);
-  std::string fuzzy =
-      "| case | nodes | from 8 to 12 | error after 1 / 12 | settled from | volume | degrees | "
-      "quality mean / worst |\n|---|---|---|---|---|---|---|---|\n";
   std::string exact =
-      "| case | nodes | fuzzy / exact | iterations | s | layers mean / 5 % | volume | distance | "
-      "quality mean / worst | below 0.2 |\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const Scene& scene : *all) {
-    double nodes = 0;
-    for (const bool first : {true, false}) {
-      const Result<std::string> row =
-          first ? fuzzy_row(scene, nodes) : exact_row(scene, nodes, meshes);
-      if (!row) std::fprintf(stderr, "%s: %s\n", scene.name.c_str(), row.error().message.c_str());
-      const std::string text =
-          row ? *row : "| " + scene.name + " | " + row.error().message + " |\n";
-      std::fputs(text.c_str(), stdout);
-      std::fflush(stdout);
-      (first ? fuzzy : exact) += text;
-    }
-  }
-  if (Result<void> set = set_table(*page, "fuzzy interfaces", fuzzy); !set) return set.error();
+      "| case | nodes | iterations | s | layers mean / 5 % | volume | distance | quality mean / "
+      "worst | below 0.2 |\n|---|---|---|---|---|---|---|---|---|\n";
+  std::string fuzzy =
+      "| case | nodes | of the exact ones | from 8 to 12 | error after 1 / 12 | settled from | "
+      "volume | degrees | quality mean / worst |\n|---|---|---|---|---|---|---|---|---|\n";
+  const auto told = [](const Scene& scene, const Result<std::string>& row) {
+    if (!row) std::fprintf(stderr, "%s: %s\n", scene.name.c_str(), row.error().message.c_str());
+    const std::string text = row ? *row : "| " + scene.name + " | " + row.error().message + " |\n";
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+    return text;
+  };
+  // Exact meshes first: they take a small part of the time.
+  std::vector<double> nodes(all->size(), 0);
+  for (std::size_t i = 0; i < all->size(); ++i)
+    exact += told((*all)[i], exact_row((*all)[i], meshes, nodes[i]));
   if (Result<void> set = set_table(*page, "exact interfaces", exact); !set) return set.error();
+  if (Result<void> written = write_file(page_file, *page); !written) return written.error();
+  for (std::size_t i = 0; i < all->size(); ++i)
+    fuzzy += told((*all)[i], fuzzy_row((*all)[i], nodes[i]));
+  if (Result<void> set = set_table(*page, "fuzzy interfaces", fuzzy); !set) return set.error();
   std::printf("meshes are in %s\n", meshes.string().c_str());
   return write_file(page_file, *page);
 }
