@@ -51,6 +51,11 @@ class SortedQualities {
     sorted_ = 0;
   }
   void add(double quality) { values_.push_back(quality); }
+  /// Several, some of which may be infinite: those are none.
+  template <std::size_t N>
+  void add(const double (&qualities)[N]) {
+    values_.insert(values_.end(), qualities, qualities + N);
+  }
   std::size_t size() const { return values_.size(); }
   /// The i-th from the worst, when those before it were asked for already; +infinity behind the
   /// last.
