@@ -44,7 +44,7 @@ std::vector<Stage> stages(const AdaptParams& params) {
   average.sweep.criterion = Criterion::energy;
   average.sweep.split_above = D == 2 ? 1.2 : 1.3;
   average.sweep.collapse_below = D == 2 ? 0.9 : 0.8;
-  average.sweep.good_enough = D == 2 ? 1 : D == 4 ? 0.8 : 0.6;
+  average.sweep.good_enough = D == 2 ? 1 : D == 4 ? 0.8 : 0.5;
   average.rounds = params.sweeps;
   average.settled = D == 4 ? 0.2 : 0.9;
   Stage hot = average;
