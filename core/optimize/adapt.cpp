@@ -27,7 +27,7 @@ struct Stage {
 /// First the sizes with the shape relaxed, since min(shape, size) can freeze where every operation
 /// must pass through worse shapes; then the elements on average, first with reconnections that cost
 /// a little energy at random, which lets defects of the mesh wander and meet (simulated annealing);
-/// then the worst elements.
+/// then the worst elements; in 2D at last the nodes' places.
 template <int D>
 std::vector<Stage> stages(const AdaptParams& params) {
   std::vector<Stage> all;
@@ -62,6 +62,14 @@ std::vector<Stage> stages(const AdaptParams& params) {
   worst.rounds = 8;
   worst.settled = 1e-4;
   all.push_back(worst);
+  if constexpr (D == 2) {
+    // Hardly a triangle is left that an operation would help: the places of the nodes are the rest.
+    Stage places = average;
+    places.sweep.moves_only = true;
+    places.rounds = 20;
+    places.settled = 0.05;
+    all.push_back(places);
+  }
   return all;
 }
 

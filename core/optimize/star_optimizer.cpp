@@ -18,8 +18,8 @@ constexpr double far_move2 = 0.01;
 constexpr double nearly_longest = 0.8;
 /// Quality below which no element may fall for the sake of the average.
 constexpr double floor_quality = 0.3;
-/// Gain of energy that is worth a reconnection.
-constexpr double least_gain = 1e-3;
+/// Gain of energy that is worth an operation, and a move where nothing but moves is left.
+constexpr double least_gain = 1e-3, least_gain_of_places = 1e-6;
 /// Clock of birth, for a moment, of an element whose place in the cavity is taken.
 constexpr std::uint32_t replaced = std::numeric_limits<std::uint32_t>::max();
 /// c(T) below which a node may join any of its neighbors.
@@ -239,9 +239,9 @@ bool StarOptimizer<D>::beats(NodeId node, const Vec<D>& point, const Packed<D>& 
   const bool by_energy = sweep_.criterion == Criterion::energy;
   const double floor =
       by_energy ? std::min(cavity_worst_, floor_quality) : std::max(best_worst_, 0.0);
+  const double most = best_cost_ - (sweep_.moves_only ? least_gain_of_places : least_gain);
   // What is still to come costs at least 1 - typical each.
-  const double limit =
-      best_cost_ - least_gain + (typical_energy<D> - 1) * static_cast<double>(faces_.size());
+  const double limit = most + (typical_energy<D> - 1) * static_cast<double>(faces_.size());
   double sum = 0;
   int count = 0;
   for (int g = 0; g < faces_.groups(); ++g) {
@@ -258,7 +258,7 @@ bool StarOptimizer<D>::beats(NodeId node, const Vec<D>& point, const Packed<D>& 
   }
   if (by_energy) {
     trial_cost_ = sum + (1 - typical_energy<D>)*count;
-    return trial_cost_ < best_cost_ - least_gain;
+    return trial_cost_ < most;
   }
   if (trial_worst_ != best_worst_) return true;
   return goes_before(trial_, best_);
