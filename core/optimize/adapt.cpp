@@ -64,8 +64,10 @@ std::vector<Stage> stages(const AdaptParams& params) {
   all.push_back(worst);
   if constexpr (D == 2) {
     // Hardly a triangle is left that an operation would help: the places of the nodes are the rest.
+    // Sizes are as good as they get, so that shapes count for more.
     Stage places = average;
     places.sweep.moves_only = true;
+    places.sweep.size_weight = 0.9;
     places.rounds = 20;
     places.settled = 0.05;
     all.push_back(places);

@@ -303,7 +303,7 @@ void FaceBatch<D>::rate(int group, const RatingKernel<D>& kernel, NodeId node, c
   derive(group);
   if (kernel.plain()) {
     rate_lanes(groups_[group], node, apex.data(), apex_carried.c.data(), kernel.relaxation,
-               size_weight<D>, rates);
+               kernel.size_weight, rates);
     return;
   }
   rates.count = 0;
@@ -337,7 +337,7 @@ void FaceBatch<D>::rate_elements(const Nodes& nodes, std::size_t first, std::siz
         for (int k = 0; k < packed; ++k) metric[k][l] = metric[k][0];
       }
       derive(0);
-      rate_four(groups_[0], apex, metric, kernel.relaxation, size_weight<D>, rates.quality,
+      rate_four(groups_[0], apex, metric, kernel.relaxation, kernel.size_weight, rates.quality,
                 rates.energy);
     }
     for (int l = 0; l < lanes; ++l) {
@@ -374,7 +374,7 @@ typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const RatingKernel<
     alignas(32) Lanes gradient[D] = {}, hessian[packed] = {}, convex[packed] = {};
     const int lanes = std::min(width, size() - g * width);
     if (kernel.plain()) {
-      out.sound = derive_lanes(groups_[g], apex.data(), apex_carried.c.data(), size_weight<D>,
+      out.sound = derive_lanes(groups_[g], apex.data(), apex_carried.c.data(), kernel.size_weight,
                                gradient, hessian, convex);
     } else {
       // The metric of each element, as if the apex had no part in it.
@@ -384,7 +384,7 @@ typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const RatingKernel<
             kernel.element_metric(real(std::min(g * width + l, size() - 1)), apex_carried);
         for (int k = 0; k < packed; ++k) held.metric[k][l] = (D + 1) * m.c[k];
       }
-      out.sound = derive_lanes(held, apex.data(), Packed<D>::zero().c.data(), size_weight<D>,
+      out.sound = derive_lanes(held, apex.data(), Packed<D>::zero().c.data(), kernel.size_weight,
                                gradient, hessian, convex);
     }
     if (!out.sound) return out;

@@ -65,16 +65,18 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
 }
 
 template <int D>
-void StarOptimizer<D>::set_relaxation(double beta) {
-  if (kernel_.relaxation == beta) return;
-  kernel_.relaxation = beta;
+void StarOptimizer<D>::set_weights(double relaxation, double size_weight) {
+  if (size_weight == 0) size_weight = usual_size_weight<D>;
+  if (kernel_.relaxation == relaxation && kernel_.size_weight == size_weight) return;
+  kernel_.relaxation = relaxation;
+  kernel_.size_weight = size_weight;
   faces_.rate_elements(nodes(), 0, topo_.elements.size(), kernel_, rating_);
 }
 
 template <int D>
 std::size_t StarOptimizer<D>::sweep(const SweepParams& params, const Progress& progress) {
   sweep_ = params;
-  set_relaxation(params.relaxation);
+  set_weights(params.relaxation, params.size_weight);
   std::size_t operations = 0;
   // The seed says at which node the sweep begins; nodes born in it wait for the next.
   const auto count = static_cast<std::uint64_t>(topo_.points.size()) - 1;

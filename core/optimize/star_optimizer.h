@@ -21,6 +21,7 @@ enum class Criterion {
 struct SweepParams {
   Criterion criterion = Criterion::order;
   double relaxation = 1;         ///< weight of the shape in the quality
+  double size_weight = 0;        ///< in the energy; 0: the usual one
   double split_above = 1.41;     ///< metric length above which an edge may get a node
   double collapse_below = 0.71;  ///< metric length below which a node may join its neighbor
   double good_enough = 0.7;      ///< c(T) above which elements are not reconnected
@@ -75,7 +76,7 @@ class StarOptimizer {
     NodeId a = 0, b = 0;             ///< node or edge that is removed
   };
 
-  void set_relaxation(double beta);
+  void set_weights(double relaxation, double size_weight);
   void open_pair(std::int32_t e, std::int32_t other, const Facet& face);
   bool process_node(NodeId s);
   bool process_edge(NodeId s, NodeId n, bool is_long);
