@@ -35,7 +35,7 @@ std::vector<Stage> stages(const AdaptParams& params) {
   sizes.sweep.relaxation = params.relaxation;
   sizes.sweep.good_enough = D == 4 ? 0.7 : 0.3;
   // In 4D too many of these leave elements that nothing mends afterwards.
-  sizes.rounds = D == 4 ? std::min(3, params.relaxed_sweeps) : params.relaxed_sweeps;
+  sizes.rounds = D == 4 ? std::min(2, params.relaxed_sweeps) : params.relaxed_sweeps;
   sizes.settled = D == 3 ? 0.7 : 0.4;
   sizes.count_moves = false;
   all.push_back(sizes);
