@@ -68,19 +68,13 @@ bool is_unit_length(double length) {
 
 template <int D>
 Conformity conformity(const Corners<D>& p, const Metric<D>& m) {
-  const Mat<D> own_inverse = simplex_metric_inverse<D>(p);
-  const Mat<D> identity = Mat<D>::Identity();
-  const Mat<D> r = own_inverse * m + m.inverse() * simplex_metric<D>(p) - 2 * identity;
-  // R is similar to C + C^-1 - 2 I with C = G^T M G and M_T^-1 = G G^T, symmetric: its trace of the
-  // square is the sum of (c + 1/c - 2)^2, without the cancellation of trace(R R).
+  const Mat<D> own_inverse = simplex_metric_inverse<D>(p), own = simplex_metric<D>(p);
+  const Mat<D> r = own_inverse * m + m.inverse() * own - 2 * Mat<D>::Identity();
+  // R is similar to C + C^-1 - 2 I with C = G^T M G and M_T^-1 = G G^T, symmetric, which is
+  // S C^-1 S with S = C - I: no difference of nearly equal numbers but that of the metrics.
   const Mat<D> g = own_inverse.llt().matrixL();
-  const Vec<D> c = spectrum<D>(g.transpose() * m * g).values;
-  double sum = 0;
-  for (int k = 0; k < D; ++k) {
-    const double gap = (c[k] - 1) * (c[k] - 1) / c[k];
-    sum += gap * gap;
-  }
-  return {r.norm(), std::sqrt(sum)};
+  const Mat<D> c = g.transpose() * m * g, s = g.transpose() * (m - own) * g;
+  return {r.norm(), (s * c.inverse() * s).norm()};
 }
 
 template <int D>

@@ -27,7 +27,7 @@ struct Stage {
 /// First the sizes with the shape relaxed, since min(shape, size) can freeze where every operation
 /// must pass through worse shapes; then the elements on average, first with reconnections that cost
 /// a little energy at random, which lets defects of the mesh wander and meet (simulated annealing);
-/// then the worst elements.
+/// then the worst elements; in 2D at last the nodes' places.
 template <int D>
 std::vector<Stage> stages(const AdaptParams& params) {
   std::vector<Stage> all;
@@ -35,7 +35,7 @@ std::vector<Stage> stages(const AdaptParams& params) {
   sizes.sweep.relaxation = params.relaxation;
   sizes.sweep.good_enough = D == 4 ? 0.7 : 0.3;
   // In 4D too many of these leave elements that nothing mends afterwards.
-  sizes.rounds = D == 4 ? std::min(3, params.relaxed_sweeps) : params.relaxed_sweeps;
+  sizes.rounds = D == 4 ? std::min(2, params.relaxed_sweeps) : params.relaxed_sweeps;
   sizes.settled = D == 3 ? 0.7 : 0.4;
   sizes.count_moves = false;
   all.push_back(sizes);
@@ -44,7 +44,7 @@ std::vector<Stage> stages(const AdaptParams& params) {
   average.sweep.criterion = Criterion::energy;
   average.sweep.split_above = D == 2 ? 1.2 : 1.3;
   average.sweep.collapse_below = D == 2 ? 0.9 : 0.8;
-  average.sweep.good_enough = D == 2 ? 1 : D == 4 ? 0.8 : 0.6;
+  average.sweep.good_enough = D == 2 ? 1 : D == 4 ? 0.8 : 0.5;
   average.rounds = params.sweeps;
   average.settled = D == 4 ? 0.2 : 0.9;
   Stage hot = average;
@@ -62,6 +62,16 @@ std::vector<Stage> stages(const AdaptParams& params) {
   worst.rounds = 8;
   worst.settled = 1e-4;
   all.push_back(worst);
+  if constexpr (D == 2) {
+    // Hardly a triangle is left that an operation would help: the places of the nodes are the rest.
+    // Sizes are as good as they get, so that shapes count for more.
+    Stage places = average;
+    places.sweep.moves_only = true;
+    places.sweep.size_weight = 0.9;
+    places.rounds = 20;
+    places.settled = 0.05;
+    all.push_back(places);
+  }
   return all;
 }
 

@@ -51,6 +51,11 @@ class SortedQualities {
     sorted_ = 0;
   }
   void add(double quality) { values_.push_back(quality); }
+  /// Several, some of which may be infinite: those are none.
+  template <std::size_t N>
+  void add(const double (&qualities)[N]) {
+    values_.insert(values_.end(), qualities, qualities + N);
+  }
   std::size_t size() const { return values_.size(); }
   /// The i-th from the worst, when those before it were asked for already; +infinity behind the
   /// last.
@@ -94,15 +99,16 @@ inline constexpr double typical_energy = D == 2   ? 1.02
                                                   : 1.38;
 /// Weight w of the size in the energy.
 template <int D>
-inline constexpr double size_weight = D == 2   ? 1.8
-                                      : D == 3 ? 0.7
-                                               : 0.6;
+inline constexpr double usual_size_weight = D == 2   ? 1.8
+                                            : D == 3 ? 0.7
+                                                     : 0.6;
 
 /// Rates the element {face, apex}. Negative quality for an ill oriented or flat one.
 template <int D>
 struct RatingKernel {
   static constexpr double mean = 1.0 / (D + 1);
   double relaxation = 1;  ///< of the shape
+  double size_weight = usual_size_weight<D>;
   MetricMean element_mean = MetricMean::m;
   SizeAverage size_average = SizeAverage::l2;
   const std::vector<Vec<D>>* points = nullptr;
@@ -147,7 +153,7 @@ struct RatingKernel {
     const double v = volume * std::sqrt(m.det() * ((1 << D) * mean));
     const double shape = v * inverse;
     return {std::min(relaxation * shape, std::min(h, inverse)),
-            1 / shape + size_weight<D> * (h + inverse - 2)};
+            1 / shape + size_weight * (h + inverse - 2)};
   }
 };
 

@@ -19,6 +19,10 @@ using Group = typename FaceBatch<D>::Group;
 constexpr int width = 4;
 /// Four numbers, worked on at once; the compiler maps them onto what the processor has.
 using Quad = double __attribute__((vector_size(width * sizeof(double)), may_alias));
+using Whole = std::int32_t __attribute__((vector_size(width * sizeof(std::int32_t)), may_alias));
+/// Of four comparisons: all bits of a lane, or none.
+using Mask = std::int64_t __attribute__((vector_size(width * sizeof(std::int64_t))));
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 LAMELLA_INLINE Quad load(const double (&lanes)[width]) {
   return *reinterpret_cast<const Quad*>(lanes);
@@ -91,7 +95,7 @@ LAMELLA_INLINE Quad power(Quad h2) {
 
 template <int D>
 LAMELLA_INLINE void rate_group(const Group<D>& g, const Quad* apex, const Quad* carried,
-                               double relaxation, double weight, double* quality, double* energy) {
+                               double relaxation, double weight, Quad& quality, Quad& energy) {
   Shapes<D> s;
   shapes<D>(g, apex, carried, s);
   const Quad h = power<D>(s.size), inverse = 1 / h, measure = s.volume * s.scale;
@@ -100,10 +104,29 @@ LAMELLA_INLINE void rate_group(const Group<D>& g, const Quad* apex, const Quad* 
   Quad w2 = s.w[0] * s.w[0];
   for (int k = 1; k < D; ++k) w2 += s.w[k] * s.w[k];
   // Flat within rounding, or ill oriented.
-  const auto sound = (s.volume > 0) & (s.volume * s.volume > 1e-22 * (load(g.normal2) * w2));
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  store(quality, sound ? q : Quad{-1, -1, -1, -1});
-  store(energy, sound ? e : Quad{infinity, infinity, infinity, infinity});
+  const Mask sound = (s.volume > 0) & (s.volume * s.volume > 1e-22 * (load(g.normal2) * w2));
+  quality = sound ? q : Quad{-1, -1, -1, -1};
+  energy = sound ? e : Quad{infinity, infinity, infinity, infinity};
+}
+
+/// Four elements with one apex, which is a node where `node` is not 0.
+template <int D>
+LAMELLA_INLINE void rate_star(const Group<D>& g, NodeId node, const double* apex,
+                              const double* carried, double relaxation, double weight,
+                              typename FaceBatch<D>::Rates& rates) {
+  Quad quality, energy;
+  rate_group<D>(g, Spread<D>(apex).lanes, Spread<Packed<D>::size>(carried).lanes, relaxation,
+                weight, quality, energy);
+  Whole none = *reinterpret_cast<const Whole*>(g.nodes[0]) < 0;
+  for (int k = 0; k < D; ++k) none |= *reinterpret_cast<const Whole*>(g.nodes[k]) == node;
+  const Mask empty = __builtin_convertvector(none, Mask);
+  quality = empty ? Quad{infinity, infinity, infinity, infinity} : quality;
+  const Quad excess = empty ? Quad{} : energy - 1;
+  store(rates.quality, quality);
+  store(rates.energy, energy);
+  rates.count = width + (none[0] + none[1]) + (none[2] + none[3]);
+  rates.worst = std::min(std::min(quality[0], quality[1]), std::min(quality[2], quality[3]));
+  rates.sum = (excess[0] + excess[1]) + (excess[2] + excess[3]);
 }
 
 template <int D>
@@ -144,42 +167,82 @@ LAMELLA_INLINE bool derive_group(const Group<D>& g, const Quad* apex, const Quad
   return sound[0] & sound[1] & sound[2] & sound[3];
 }
 
-/// Normals, centers and sums over the edges of four triangles.
-LAMELLA_INLINE void triangles(Group<3>& g) {
-  Quad a[3], b[3], d[3], n[3];
-  for (int k = 0; k < 3; ++k) {
-    const Quad p0 = load(g.points[0][k]), p1 = load(g.points[1][k]), p2 = load(g.points[2][k]);
-    a[k] = p1 - p0;
-    b[k] = p2 - p0;
-    d[k] = p2 - p1;
-    store(g.center[k], (p0 + p1 + p2) * (1.0 / 3));
-  }
-  n[0] = a[2] * b[1] - a[1] * b[2];
-  n[1] = a[0] * b[2] - a[2] * b[0];
-  n[2] = a[1] * b[0] - a[0] * b[1];
-  for (int k = 0; k < 3; ++k) store(g.normal[k], n[k]);
-  store(g.normal2, n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  for (int i = 0, k = 0; i < 3; ++i)
-    for (int j = i; j < 3; ++j, ++k)
-      store(g.edges[k], (i == j ? 4.0 / 3 : 8.0 / 3) * (a[i] * a[j] + b[i] * b[j] + d[i] * d[j]));
+/// Determinant of the rows i, j and k of three columns.
+LAMELLA_INLINE Quad minor(const Quad (&c)[3][4], int i, int j, int k) {
+  return c[0][i] * (c[1][j] * c[2][k] - c[1][k] * c[2][j]) -
+         c[0][j] * (c[1][i] * c[2][k] - c[1][k] * c[2][i]) +
+         c[0][k] * (c[1][i] * c[2][j] - c[1][j] * c[2][i]);
 }
 
-LAMELLA_VECTOR void triangles_of(Group<3>& g) { triangles(g); }
+/// Reads the nodes of four faces: normals, centers and sums over the edges.
+template <int D>
+LAMELLA_INLINE void read_faces(Group<D>& g, const Vec<D>* points, const Packed<D>* carried) {
+  Quad p[D][D], e[D - 1][D], n[D];
+  for (int k = 0; k < D; ++k) {
+    const double* x[width];
+    const double* m[width];
+    for (int l = 0; l < width; ++l) {
+      x[l] = points[g.nodes[k][l]].data();
+      m[l] = carried[g.nodes[k][l]].c.data();
+    }
+    for (int d = 0; d < D; ++d) p[k][d] = Quad{x[0][d], x[1][d], x[2][d], x[3][d]};
+    for (int c = 0; c < Packed<D>::size; ++c) {
+      const Quad own{m[0][c], m[1][c], m[2][c], m[3][c]};
+      store(g.metric[c], k == 0 ? own : load(g.metric[c]) + own);
+    }
+  }
+  for (int d = 0; d < D; ++d) {
+    Quad sum = p[0][d];
+    for (int k = 1; k < D; ++k) sum += p[k][d];
+    store(g.center[d], sum * (1.0 / D));
+    for (int k = 1; k < D; ++k) e[k - 1][d] = p[k][d] - p[0][d];
+  }
+  if constexpr (D == 2) {
+    n[0] = e[0][1];
+    n[1] = -e[0][0];
+  } else if constexpr (D == 3) {
+    n[0] = e[0][2] * e[1][1] - e[0][1] * e[1][2];
+    n[1] = e[0][0] * e[1][2] - e[0][2] * e[1][0];
+    n[2] = e[0][1] * e[1][0] - e[0][0] * e[1][1];
+  } else {
+    n[0] = minor(e, 1, 2, 3);
+    n[1] = -minor(e, 0, 2, 3);
+    n[2] = minor(e, 0, 1, 3);
+    n[3] = -minor(e, 0, 1, 2);
+  }
+  Quad n2 = n[0] * n[0];
+  for (int d = 0; d < D; ++d) {
+    store(g.normal[d], n[d]);
+    if (d > 0) n2 += n[d] * n[d];
+  }
+  store(g.normal2, n2);
+  for (int i = 0, c = 0; i < D; ++i)
+    for (int j = i; j < D; ++j, ++c) {
+      Quad sum = {};
+      for (int a = 0; a < D; ++a)
+        for (int b = a + 1; b < D; ++b) sum += (p[b][i] - p[a][i]) * (p[b][j] - p[a][j]);
+      store(g.edges[c], (i == j ? 1 : 2) * (D + 1.0) / D * sum);
+    }
+}
 
 #define LAMELLA_DIMENSION(D)                                                                     \
-  LAMELLA_VECTOR void rate_lanes(const Group<D>& g, const double* apex, const double* carried,   \
-                                 double relaxation, double weight, double* quality,              \
-                                 double* energy) {                                               \
-    rate_group<D>(g, Spread<D>(apex).lanes, Spread<Packed<D>::size>(carried).lanes, relaxation,  \
-                  weight, quality, energy);                                                      \
+  LAMELLA_VECTOR void read_lanes(Group<D>& g, const Vec<D>* points, const Packed<D>* carried) {  \
+    read_faces<D>(g, points, carried);                                                           \
+  }                                                                                              \
+  LAMELLA_VECTOR void rate_lanes(const Group<D>& g, NodeId node, const double* apex,             \
+                                 const double* carried, double relaxation, double weight,        \
+                                 FaceBatch<D>::Rates& rates) {                                   \
+    rate_star<D>(g, node, apex, carried, relaxation, weight, rates);                             \
   }                                                                                              \
   LAMELLA_VECTOR void rate_four(const Group<D>& g, const double(*apex)[width],                   \
                                 const double(*carried)[width], double relaxation, double weight, \
                                 double* quality, double* energy) {                               \
-    Quad x[D], m[Packed<D>::size];                                                               \
+    Quad x[D], m[Packed<D>::size], q, e;                                                         \
     for (int k = 0; k < D; ++k) x[k] = load(apex[k]);                                            \
     for (int k = 0; k < Packed<D>::size; ++k) m[k] = load(carried[k]);                           \
-    rate_group<D>(g, x, m, relaxation, weight, quality, energy);                                 \
+    rate_group<D>(g, x, m, relaxation, weight, q, e);                                            \
+    store(quality, q);                                                                           \
+    store(energy, e);                                                                            \
   }                                                                                              \
   LAMELLA_VECTOR bool derive_lanes(const Group<D>& g, const double* apex, const double* carried, \
                                    double weight, double(*gradient)[width],                      \
@@ -195,58 +258,17 @@ LAMELLA_DIMENSION(4)
 }  // namespace
 
 template <int D>
-void FaceBatch<D>::add(const Nodes& nodes, std::int32_t element, int place) {
-  const int i = size(), lane = i % width, group = i / width;
-  if (static_cast<std::size_t>(group) >= groups_.size()) groups_.resize(group + 1);
-  CavityFace<D>& f = faces_.emplace_back();
-  f.element = element;
-  f.place = place;
-  f.nodes = opposite_facet<D>(nodes.elements[element], place);
-  Group& g = groups_[group];
-  const Packed<D>* m[D];
-  for (int k = 0; k < D; ++k) {
-    const Vec<D>& x = nodes.points[f.nodes[k]];
-    for (int d = 0; d < D; ++d) g.points[k][d][lane] = x[d];
-    m[k] = &nodes.carried[f.nodes[k]];
-  }
-  for (int j = 0; j < packed; ++j) {
-    double sum = m[0]->c[j];
-    for (int k = 1; k < D; ++k) sum += m[k]->c[j];
-    g.metric[j][lane] = sum;
-  }
-}
-
-template <int D>
 void FaceBatch<D>::derive(int group) {
+  if (groups_.size() < static_cast<std::size_t>(groups())) groups_.resize(groups());
   for (; derived_ <= group; ++derived_) {
     Group& g = groups_[derived_];
-    for (int l = size() - derived_ * width; l < width; ++l) {
-      for (int k = 0; k < D; ++k)
-        for (int d = 0; d < D; ++d) g.points[k][d][l] = g.points[k][d][0];
-      for (int k = 0; k < packed; ++k) g.metric[k][l] = g.metric[k][0];
+    const int first = derived_ * width;
+    for (int l = 0; l < width; ++l) {
+      const CavityFace<D>& f = faces_[std::min(first + l, size() - 1)];
+      for (int k = 0; k < D; ++k) g.nodes[k][l] = f.nodes[k];
     }
-    if constexpr (D == 3) {
-      triangles_of(g);
-    } else {
-      for (int l = 0; l < width; ++l) {
-        std::array<Vec<D>, D> p;
-        Vec<D> center = Vec<D>::Zero();
-        for (int k = 0; k < D; ++k) {
-          for (int d = 0; d < D; ++d) p[k][d] = g.points[k][d][l];
-          center += p[k] / D;
-        }
-        const Vec<D> normal = -facet_normal<D>(p);
-        PackedDual<D> edges = PackedDual<D>::zero();
-        for (int i = 0; i < D; ++i)
-          for (int j = i + 1; j < D; ++j) edges.add_outer((D + 1.0) / D, Vec<D>(p[j] - p[i]));
-        g.normal2[l] = normal.squaredNorm();
-        for (int d = 0; d < D; ++d) {
-          g.center[d][l] = center[d];
-          g.normal[d][l] = normal[d];
-        }
-        for (int k = 0; k < packed; ++k) g.edges[k][l] = edges.c[k];
-      }
-    }
+    read_lanes(g, source_->points.data(), source_->carried.data());
+    for (int l = size() - first; l < width; ++l) g.nodes[0][l] = -1;
   }
 }
 
@@ -276,25 +298,34 @@ Rating FaceBatch<D>::rate_one(int i, const RatingKernel<D>& kernel, const Vec<D>
 }
 
 template <int D>
-void FaceBatch<D>::rate(int group, const RatingKernel<D>& kernel, const Vec<D>& apex,
+void FaceBatch<D>::rate(int group, const RatingKernel<D>& kernel, NodeId node, const Vec<D>& apex,
                         const Packed<D>& apex_carried, Rates& rates) {
-  if (!kernel.plain()) {
-    for (int l = 0; l < width && group * width + l < size(); ++l) {
-      const Rating r = rate_one(group * width + l, kernel, apex, apex_carried);
-      rates.quality[l] = r.quality;
-      rates.energy[l] = r.energy;
-    }
+  derive(group);
+  if (kernel.plain()) {
+    rate_lanes(groups_[group], node, apex.data(), apex_carried.c.data(), kernel.relaxation,
+               kernel.size_weight, rates);
     return;
   }
-  derive(group);
-  rate_lanes(groups_[group], apex.data(), apex_carried.c.data(), kernel.relaxation, size_weight<D>,
-             rates.quality, rates.energy);
+  rates.count = 0;
+  rates.worst = infinity;
+  rates.sum = 0;
+  for (int l = 0; l < width; ++l) {
+    const int i = group * width + l;
+    rates.quality[l] = infinity;
+    if (i >= size() || (node != 0 && faces_[i].contains(node))) continue;
+    const Rating r = rate_one(i, kernel, apex, apex_carried);
+    rates.quality[l] = r.quality;
+    rates.energy[l] = r.energy;
+    ++rates.count;
+    rates.worst = std::min(rates.worst, r.quality);
+    rates.sum += r.energy - 1;
+  }
 }
 
 template <int D>
 void FaceBatch<D>::rate_elements(const Nodes& nodes, std::size_t first, std::size_t last,
                                  const RatingKernel<D>& kernel, std::span<Rating> ratings) {
-  clear();
+  open(nodes);
   alignas(32) Lanes apex[D], metric[packed];
   Rates rates;
   const auto finish = [&] {
@@ -306,7 +337,7 @@ void FaceBatch<D>::rate_elements(const Nodes& nodes, std::size_t first, std::siz
         for (int k = 0; k < packed; ++k) metric[k][l] = metric[k][0];
       }
       derive(0);
-      rate_four(groups_[0], apex, metric, kernel.relaxation, size_weight<D>, rates.quality,
+      rate_four(groups_[0], apex, metric, kernel.relaxation, kernel.size_weight, rates.quality,
                 rates.energy);
     }
     for (int l = 0; l < lanes; ++l) {
@@ -315,17 +346,17 @@ void FaceBatch<D>::rate_elements(const Nodes& nodes, std::size_t first, std::siz
       ratings[e - first] = kernel.plain() ? Rating{rates.quality[l], rates.energy[l]}
                                           : rate_one(l, kernel, nodes.points[n], nodes.carried[n]);
     }
-    clear();
+    open(nodes);
   };
   for (std::size_t e = first; e < last; ++e) {
     const auto& element = nodes.elements[e];
     if (element[1] == 0) continue;
     if (element[0] == 0) {
-      ratings[e - first] = {std::numeric_limits<double>::infinity(), 0};
+      ratings[e - first] = {infinity, 0};
       continue;
     }
     const int lane = size();
-    add(nodes, static_cast<std::int32_t>(e), 0);
+    add(static_cast<std::int32_t>(e), 0);
     for (int d = 0; d < D; ++d) apex[d][lane] = nodes.points[element[0]][d];
     for (int k = 0; k < packed; ++k) metric[k][lane] = nodes.carried[element[0]].c[k];
     if (size() == width) finish();
@@ -343,7 +374,7 @@ typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const RatingKernel<
     alignas(32) Lanes gradient[D] = {}, hessian[packed] = {}, convex[packed] = {};
     const int lanes = std::min(width, size() - g * width);
     if (kernel.plain()) {
-      out.sound = derive_lanes(groups_[g], apex.data(), apex_carried.c.data(), size_weight<D>,
+      out.sound = derive_lanes(groups_[g], apex.data(), apex_carried.c.data(), kernel.size_weight,
                                gradient, hessian, convex);
     } else {
       // The metric of each element, as if the apex had no part in it.
@@ -353,7 +384,7 @@ typename FaceBatch<D>::Derivatives FaceBatch<D>::derivatives(const RatingKernel<
             kernel.element_metric(real(std::min(g * width + l, size() - 1)), apex_carried);
         for (int k = 0; k < packed; ++k) held.metric[k][l] = (D + 1) * m.c[k];
       }
-      out.sound = derive_lanes(held, apex.data(), Packed<D>::zero().c.data(), size_weight<D>,
+      out.sound = derive_lanes(held, apex.data(), Packed<D>::zero().c.data(), kernel.size_weight,
                                gradient, hessian, convex);
     }
     if (!out.sound) return out;

@@ -18,8 +18,10 @@ constexpr double far_move2 = 0.01;
 constexpr double nearly_longest = 0.8;
 /// Quality below which no element may fall for the sake of the average.
 constexpr double floor_quality = 0.3;
-/// Gain of energy that is worth a reconnection.
-constexpr double least_gain = 1e-3;
+/// Gain of energy that is worth an operation, and a move where nothing but moves is left.
+constexpr double least_gain = 1e-3, least_gain_of_places = 1e-6;
+/// Clock of birth, for a moment, of an element whose place in the cavity is taken.
+constexpr std::uint32_t replaced = std::numeric_limits<std::uint32_t>::max();
 /// c(T) below which a node may join any of its neighbors.
 constexpr double poor_quality = 0.3;
 
@@ -63,17 +65,18 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
 }
 
 template <int D>
-void StarOptimizer<D>::set_relaxation(double beta) {
-  if (kernel_.relaxation == beta) return;
-  kernel_.relaxation = beta;
-  faces_.rate_elements({topo_.elements, topo_.points, averaged()}, 0, topo_.elements.size(),
-                       kernel_, rating_);
+void StarOptimizer<D>::set_weights(double relaxation, double size_weight) {
+  if (size_weight == 0) size_weight = usual_size_weight<D>;
+  if (kernel_.relaxation == relaxation && kernel_.size_weight == size_weight) return;
+  kernel_.relaxation = relaxation;
+  kernel_.size_weight = size_weight;
+  faces_.rate_elements(nodes(), 0, topo_.elements.size(), kernel_, rating_);
 }
 
 template <int D>
 std::size_t StarOptimizer<D>::sweep(const SweepParams& params, const Progress& progress) {
   sweep_ = params;
-  set_relaxation(params.relaxation);
+  set_weights(params.relaxation, params.size_weight);
   std::size_t operations = 0;
   // The seed says at which node the sweep begins; nodes born in it wait for the next.
   const auto count = static_cast<std::uint64_t>(topo_.points.size()) - 1;
@@ -119,41 +122,38 @@ bool StarOptimizer<D>::edges_matter(NodeId s) const {
 /// has nothing new to offer.
 template <int D>
 std::size_t StarOptimizer<D>::improve_edges(NodeId s, std::uint32_t before) {
-  list_edges(s, before, 0);
+  list_edges(s, before);
   std::size_t operations = 0;
   const double split4 = fourth_power(sweep_.split_above);
-  for (std::size_t i = 0; i < owned_.size(); ++i) {
-    if (!owned_[i].fresh) continue;
-    const NodeId n = owned_[i].node;
+  for (OwnedEdge edge : owned_) {
+    const NodeId n = edge.node;
+    // Once something has changed the list says no more than which edges there were.
+    const bool listed = operations == 0;
     const double l4 = length4(s, n);
-    if (l4 <= split4 && owned_[i].worst > sweep_.good_enough) continue;
+    if (listed && (!edge.fresh || (l4 <= split4 && edge.worst > sweep_.good_enough))) continue;
+    if (!listed) edge = {n, infinity, false};
     star_.clear();
     for (auto e : topo_.around.of(s))
-      if (Topology<D>::has(topo_.elements[e], n)) star_.push_back(e);
+      if (Topology<D>::has(topo_.elements[e], n)) {
+        star_.push_back(e);
+        if (!listed) edge.see(rating_[e].quality, topo_.birth[e] > before);
+      }
+    if (!edge.fresh) continue;
     const bool is_long = l4 > split4 && longest(s, n, l4 / fourth_power(nearly_longest));
-    if (!is_long && owned_[i].worst > sweep_.good_enough) continue;
+    if (!is_long && edge.worst > sweep_.good_enough) continue;
     if (!process_edge(s, n, is_long)) continue;
     ++operations;
     if (topo_.around.empty(s)) break;
-    list_edges(s, before, i + 1);
   }
   return operations;
 }
 
 /// The edges that s owns, with the quality of their worst element and whether one of their elements
-/// is younger than `before`; those before `first` are done and stay in the list. Without elements
-/// an edge is no longer fresh.
+/// is younger than `before`.
 template <int D>
-void StarOptimizer<D>::list_edges(NodeId s, std::uint32_t before, std::size_t first) {
-  const bool anew = first == 0;
-  if (anew) owned_.clear();
+void StarOptimizer<D>::list_edges(NodeId s, std::uint32_t before) {
+  owned_.clear();
   ++mark_value_;
-  for (std::size_t i = first; i < owned_.size(); ++i) {
-    owned_[i].worst = infinity;
-    owned_[i].fresh = false;
-    mark_[owned_[i].node] = mark_value_;
-    place_[owned_[i].node] = static_cast<std::int32_t>(i);
-  }
   const bool held = locked(s);
   for (auto e : topo_.around.of(s)) {
     const bool fresh = topo_.birth[e] > before;
@@ -161,14 +161,12 @@ void StarOptimizer<D>::list_edges(NodeId s, std::uint32_t before, std::size_t fi
     for (NodeId n : topo_.elements[e]) {
       if (n <= s) continue;
       if (mark_[n] != mark_value_) {
-        if (!anew || (held && locked(n))) continue;
+        if (held && locked(n)) continue;
         mark_[n] = mark_value_;
         place_[n] = static_cast<std::int32_t>(owned_.size());
         owned_.push_back({n, infinity, false});
       }
-      OwnedEdge& edge = owned_[place_[n]];
-      edge.fresh |= fresh;
-      edge.worst = std::min(edge.worst, quality);
+      owned_[place_[n]].see(quality, fresh);
     }
   }
 }
@@ -187,25 +185,24 @@ bool StarOptimizer<D>::longest(NodeId s, NodeId n, double limit4) const {
 template <int D>
 void StarOptimizer<D>::open_cavity(std::span<const std::int32_t> elements, NodeId a, NodeId b) {
   cavity_.assign(elements.begin(), elements.end());
-  faces_.clear();
+  faces_.open(nodes());
   virtual_faces_.clear();
   link_.clear();
   ++mark_value_;
-  const typename FaceBatch<D>::Nodes source{topo_.elements, topo_.points, averaged()};
   for (auto e : cavity_) {
-    const Element& nodes = topo_.elements[e];
-    const bool is_virtual = nodes[0] == 0;
+    const Element& element = topo_.elements[e];
+    const bool is_virtual = element[0] == 0;
     for (int k = 0; k <= D; ++k) {
-      const NodeId n = nodes[k];
+      const NodeId n = element[k];
       if (n == a || n == b) {
         if (is_virtual) {
           CavityFace<D> f;
-          f.nodes = opposite_facet<D>(nodes, k);
+          f.nodes = opposite_facet<D>(element, k);
           f.element = e;
           f.place = k;
           virtual_faces_.push_back(f);
         } else {
-          faces_.add(source, e, k);
+          faces_.add(e, k);
         }
       } else if (n != 0 && mark_[n] != mark_value_) {
         mark_[n] = mark_value_;
@@ -235,49 +232,43 @@ void StarOptimizer<D>::start_from_current() {
   }
 }
 
-/// Whether the star of the apex goes before the best known; its figures are in trial_ then.
+/// Whether the star of an apex goes before the best known; its figures are in trial_ then.
 template <int D>
-bool StarOptimizer<D>::beats(const Apex& apex) {
+bool StarOptimizer<D>::beats(NodeId node, const Vec<D>& point, const Packed<D>& averaged) {
   trial_.clear();
   trial_worst_ = infinity;
-  trial_cost_ = 0;
   typename FaceBatch<D>::Rates rates;
   const bool by_energy = sweep_.criterion == Criterion::energy;
   const double floor =
       by_energy ? std::min(cavity_worst_, floor_quality) : std::max(best_worst_, 0.0);
+  const double most = best_cost_ - (sweep_.moves_only ? least_gain_of_places : least_gain);
   // What is still to come costs at least 1 - typical each.
-  const double limit =
-      best_cost_ - least_gain + (typical_energy<D> - 1) * static_cast<double>(faces_.size());
+  const double limit = most + (typical_energy<D> - 1) * static_cast<double>(faces_.size());
   double sum = 0;
   int count = 0;
   for (int g = 0; g < faces_.groups(); ++g) {
-    faces_.rate(g, kernel_, apex.point, apex.averaged, rates);
-    const int first = g * FaceBatch<D>::width;
-    const int lanes = std::min(FaceBatch<D>::width, faces_.size() - first);
-    for (int l = 0; l < lanes; ++l) {
-      if (apex.node != 0 && faces_[first + l].contains(apex.node)) continue;
-      if (rates.quality[l] < floor) return false;
-      trial_worst_ = std::min(trial_worst_, rates.quality[l]);
-      if (by_energy) {
-        sum += rates.energy[l] - 1;
-        ++count;
-      } else {
-        trial_.add(rates.quality[l]);
-      }
+    faces_.rate(g, kernel_, node, point, averaged, rates);
+    if (rates.worst < floor) return false;
+    trial_worst_ = std::min(trial_worst_, rates.worst);
+    if (by_energy) {
+      sum += rates.sum;
+      count += rates.count;
+      if (sum > limit) return false;
+    } else {
+      trial_.add(rates.quality);
     }
-    if (by_energy && sum > limit) return false;
   }
   if (by_energy) {
     trial_cost_ = sum + (1 - typical_energy<D>)*count;
-    return trial_cost_ < best_cost_ - least_gain;
+    return trial_cost_ < most;
   }
   if (trial_worst_ != best_worst_) return true;
   return goes_before(trial_, best_);
 }
 
+/// Makes the apex that beat the best known the best, unless the boundary forbids.
 template <int D>
-void StarOptimizer<D>::offer(const Apex& apex, const BoundarySite& site) {
-  if (!beats(apex)) return;
+void StarOptimizer<D>::take_if_allowed(const Apex& apex, const BoundarySite& site) {
   if (site.boundary) {
     if (!topology_allows(apex, site) || !boundary_allows(apex, site)) return;
     best_retag_ = retag_;
@@ -348,7 +339,7 @@ bool StarOptimizer<D>::process_node(NodeId s) {
   const bool any = cavity_worst_ < poor_quality;
   const auto join = [&](NodeId v) {
     if (sweep_.moves_only) return;
-    if (any || length4(s, v) < near4) offer(existing(v), site);
+    if (any || length4(s, v) < near4) offer(v, site);
   };
   if (!site.boundary) {
     for (NodeId v : link_) join(v);
@@ -374,12 +365,12 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n, bool is_long) {
   if (!edge_site(s, n, site)) return false;
   start_from_current();
   if (!site.boundary) {
-    for (NodeId v : link_) offer(existing(v), site);
+    for (NodeId v : link_) offer(v, site);
   } else if (!site.on_feature) {
     for (NodeId v : link_) {
       bool on_boundary = false;
       for (const auto& f : virtual_faces_) on_boundary = on_boundary || f.contains(v);
-      if (on_boundary) offer(existing(v), site);
+      if (on_boundary) offer(v, site);
     }
   }
   // Where the worst elements are at stake a node in between may free them.
@@ -440,7 +431,7 @@ void StarOptimizer<D>::rate_all(const Apex& apex) {
   rates_.clear();
   typename FaceBatch<D>::Rates rates;
   for (int g = 0; g < faces_.groups(); ++g) {
-    faces_.rate(g, kernel_, apex.point, apex.averaged, rates);
+    faces_.rate(g, kernel_, 0, apex.point, apex.averaged, rates);
     for (int l = 0; l < FaceBatch<D>::width; ++l)
       rates_.push_back({rates.quality[l], rates.energy[l]});
   }
@@ -487,22 +478,37 @@ void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
   }
   births_.clear();
   rate_all(apex);
-  for (int i = 0; i < faces_.size(); ++i) {
-    const auto& f = faces_[i];
-    if (f.contains(v)) continue;
+  const auto bear = [&](const CavityFace<D>& f, std::int32_t label, const Rating& rating) {
+    if (f.contains(v)) return;
     Element nodes = topo_.elements[f.element];
     nodes[f.place] = v;
-    births_.push_back({nodes, topo_.label[f.element], rates_[i]});
+    births_.push_back({nodes, label, rating, f.element, f.place});
+  };
+  for (int i = 0; i < faces_.size(); ++i)
+    bear(faces_[i], topo_.label[faces_[i].element], rates_[i]);
+  for (std::size_t i = 0; i < virtual_faces_.size(); ++i)
+    bear(virtual_faces_[i], best_retag_[i], {infinity, 0});
+  // The first child of an element takes its place: but one all lists of elements stay as they are.
+  std::size_t others = 0;
+  for (const Birth& b : births_) {
+    if (topo_.birth[b.element] == replaced) {
+      births_[others++] = b;
+      continue;
+    }
+    topo_.birth[b.element] = replaced;
+    topo_.replace_node(b.element, b.place, v);
+    topo_.label[b.element] = b.label;
+    rating_[b.element] = b.rating;
   }
-  for (std::size_t i = 0; i < virtual_faces_.size(); ++i) {
-    const auto& f = virtual_faces_[i];
-    if (f.contains(v)) continue;
-    Element nodes = topo_.elements[f.element];
-    nodes[f.place] = v;
-    births_.push_back({nodes, best_retag_[i], {infinity, 0}});
+  births_.resize(others);
+  for (auto e : cavity_) {
+    if (topo_.birth[e] != replaced) {
+      topo_.remove(e);
+      continue;
+    }
+    topo_.birth[e] = topo_.touch[e] = topo_.clock;
   }
-  for (auto e : cavity_) topo_.remove(e);
-  for (const auto& b : births_) {
+  for (const Birth& b : births_) {
     const std::int32_t e = topo_.add(b.nodes, b.label);
     if (static_cast<std::size_t>(e) >= rating_.size()) rating_.resize(e + 1);
     rating_[e] = b.rating;

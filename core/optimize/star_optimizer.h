@@ -21,6 +21,7 @@ enum class Criterion {
 struct SweepParams {
   Criterion criterion = Criterion::order;
   double relaxation = 1;         ///< weight of the shape in the quality
+  double size_weight = 0;        ///< in the energy; 0: the usual one
   double split_above = 1.41;     ///< metric length above which an edge may get a node
   double collapse_below = 0.71;  ///< metric length below which a node may join its neighbor
   double good_enough = 0.7;      ///< c(T) above which elements are not reconnected
@@ -78,17 +79,23 @@ class StarOptimizer {
     NodeId a = 0, b = 0;             ///< node or edge that is removed
   };
 
-  void set_relaxation(double beta);
+  void set_weights(double relaxation, double size_weight);
   void open_pair(std::int32_t e, std::int32_t other, const Facet& face);
   bool process_node(NodeId s);
   bool process_edge(NodeId s, NodeId n, bool is_long);
   std::size_t improve_edges(NodeId s, std::uint32_t before);
-  void list_edges(NodeId s, std::uint32_t before, std::size_t first);
+  void list_edges(NodeId s, std::uint32_t before);
   bool movable(NodeId n) const { return !fixed_[n] && !locked(n); }
   bool locked(NodeId n) const { return shared_[n] != 0; }
   void open_cavity(std::span<const std::int32_t> elements, NodeId a, NodeId b);
-  void offer(const Apex& apex, const BoundarySite& site);
-  bool beats(const Apex& apex);
+  void offer(const Apex& apex, const BoundarySite& site) {
+    if (beats(apex.node, apex.point, apex.averaged)) take_if_allowed(apex, site);
+  }
+  void offer(NodeId v, const BoundarySite& site) {
+    if (beats(v, topo_.points[v], averaged()[v])) take_if_allowed(existing(v), site);
+  }
+  bool beats(NodeId node, const Vec<D>& point, const Packed<D>& averaged);
+  void take_if_allowed(const Apex& apex, const BoundarySite& site);
   void start_from_current();
   Apex existing(NodeId v) const { return {v, topo_.points[v], metric_[v], averaged()[v]}; }
   Apex new_point(const Vec<D>& x, const Packed<D>& metric) const;
@@ -107,6 +114,7 @@ class StarOptimizer {
   void release_if_unused(NodeId n);
 
   const std::vector<Packed<D>>& averaged() const { return plain_ ? metric_ : own_averaged_; }
+  FaceBatch<D>::Nodes nodes() const { return {topo_.elements, topo_.points, averaged()}; }
 
   // In star_boundary.cpp.
   bool node_site(NodeId s, BoundarySite& site);
@@ -168,6 +176,7 @@ class StarOptimizer {
     Element nodes;
     std::int32_t label;
     Rating rating;
+    std::int32_t element, place;  ///< of which it keeps all nodes but one
   };
   std::vector<Birth> births_;
   std::vector<Rating> rates_;  ///< [face], and some behind the last
@@ -181,6 +190,10 @@ class StarOptimizer {
     NodeId node;   ///< its other end
     double worst;  ///< quality of the elements around
     bool fresh;    ///< whether one of them is new
+    void see(double quality, bool is_new) {
+      worst = std::min(worst, quality);
+      fresh = fresh || is_new;
+    }
   };
   std::vector<OwnedEdge> owned_;
   std::vector<std::int32_t> place_;  ///< [node] in owned_, where marked

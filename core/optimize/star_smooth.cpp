@@ -5,8 +5,8 @@
 namespace lamella {
 namespace {
 
-/// Squared metric length of a move that is not worth making.
-constexpr double idle_move2 = 1e-4;
+/// Squared metric length of a move that is not worth making, and where nothing else is left.
+constexpr double idle_move2 = 1e-4, idle_place2 = 1e-6;
 /// Squared metric length of a move over which the node's own metric still holds.
 constexpr double short_move2 = 0.01;
 
@@ -47,7 +47,7 @@ std::optional<Vec<D>> StarOptimizer<D>::newton_step(NodeId s, const BoundarySite
   };
   if (!solve(hessian) && !solve(convex)) return std::nullopt;
   const double length2 = metric_[s].quad(step);
-  if (length2 < idle_move2) return std::nullopt;
+  if (length2 < (sweep_.moves_only ? idle_place2 : idle_move2)) return std::nullopt;
   if (length2 > 1) step /= std::sqrt(length2);
   return step;
 }

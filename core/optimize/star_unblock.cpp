@@ -6,7 +6,7 @@ namespace lamella {
 
 template <int D>
 std::size_t StarOptimizer<D>::open_blocking(const Progress& progress) {
-  set_relaxation(1);
+  set_weights(1, 0);
   std::vector<char> on_wall(topo_.points.size(), 0);
   for (std::size_t e = 0; e < topo_.elements.size(); ++e)
     if (topo_.alive(static_cast<std::int32_t>(e)) && topo_.is_virtual(static_cast<std::int32_t>(e)))
@@ -80,12 +80,11 @@ std::size_t StarOptimizer<D>::open_blocking(const Progress& progress) {
 template <int D>
 void StarOptimizer<D>::open_pair(std::int32_t e, std::int32_t other, const Facet& face) {
   cavity_ = {e, other};
-  faces_.clear();
+  faces_.open(nodes());
   virtual_faces_.clear();
   for (std::int32_t i : cavity_)
     for (int k = 0; k <= D; ++k)
-      if (std::find(face.begin(), face.end(), topo_.elements[i][k]) != face.end())
-        faces_.add({topo_.elements, topo_.points, averaged()}, i, k);
+      if (std::find(face.begin(), face.end(), topo_.elements[i][k]) != face.end()) faces_.add(i, k);
 }
 
 #define LAMELLA_INSTANTIATE(D) \

@@ -162,6 +162,11 @@ struct Topology {
     elements[e].fill(0);
     free_elements.push_back(e);
   }
+  void replace_node(std::int32_t e, int place, NodeId with) {
+    around.remove(elements[e][place], e);
+    elements[e][place] = with;
+    around.add(with, e);
+  }
   NodeId add_node(const Vec<D>& x) {
     if (!free_nodes.empty()) {
       const NodeId n = free_nodes.back();

@@ -64,7 +64,7 @@ TYPED_TEST(StarOptimizers, TheKernelRatesAsTheDefinitionsDo) {
     EXPECT_NEAR(rating.quality, expected.quality, 1e-9 * expected.quality);
     // 1 / shape + w (h^D + h^-D - 2): from the size of (3.6), which is the smaller of both.
     const double energy =
-        1 / expected.shape + size_weight<D> * (expected.size + 1 / expected.size - 2);
+        1 / expected.shape + usual_size_weight<D> * (expected.size + 1 / expected.size - 2);
     EXPECT_NEAR(rating.energy, energy, 1e-9 * energy);
   }
 }
