@@ -10,6 +10,7 @@
 #include <vtkOpenGLState.h>
 #include <vtkRenderer.h>
 
+#include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QOpenGLContext>
@@ -20,6 +21,7 @@
 #include <cmath>
 
 #include "ui/theme.h"
+#include "ui/views/kept_memory.h"
 
 namespace lamella::ui {
 namespace {
@@ -153,6 +155,7 @@ void VtkView::initializeGL() {
   const auto* name = reinterpret_cast<const char*>(context_->functions()->glGetString(GL_RENDERER));
   const QByteArray device(name ? name : "");
   software_ = device.contains("llvmpipe") || device.contains("softpipe");
+  if (software_) keep_memory(*qApp);
   vtk_->drawn = 0;
   vtk_->rehearsed = false;
   vtk_->window->SetMultiSamples(software_ ? 0 : 8);
