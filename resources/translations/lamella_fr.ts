@@ -667,10 +667,6 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <translation>Nœuds</translation>
     </message>
     <message>
-        <source>Layers through the walls</source>
-        <translation>Couches à travers les parois</translation>
-    </message>
-    <message>
         <source>Conformity (0 is perfect)</source>
         <translation>Conformité (0 est parfait)</translation>
     </message>
@@ -713,10 +709,6 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
     <message>
         <source>mean</source>
         <translation>moyenne</translation>
-    </message>
-    <message>
-        <source>5 % quantile</source>
-        <translation>quantile 5 %</translation>
     </message>
     <message>
         <source>conformity</source>
@@ -765,6 +757,14 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
     <message>
         <source>  (latest)</source>
         <translation>  (dernière)</translation>
+    </message>
+    <message>
+        <source>Layers per wall</source>
+        <translation>Couches par paroi</translation>
+    </message>
+    <message>
+        <source>Measured through the walls: the mean, and what 5 % of the wall area fall below</source>
+        <translation>Mesurées à travers les parois : la moyenne, et la valeur que 5 % de la surface des parois n’atteignent pas</translation>
     </message>
 </context>
 <context>
@@ -836,7 +836,7 @@ pas là. Un de tous les corps : leurs maillages s&apos;accordent.</translation>
     </message>
     <message>
         <source>box with a margin</source>
-        <translation>boîte avec une marge</translation>
+        <translation>boîte et marge</translation>
     </message>
     <message>
         <source>one of the bodies</source>
@@ -1479,6 +1479,18 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <source>%L1, up to %2</source>
         <translation>%L1, jusqu&apos;à %2</translation>
     </message>
+    <message>
+        <source>Arrows</source>
+        <translation>Flèches</translation>
+    </message>
+    <message>
+        <source>Lines</source>
+        <translation>Lignes</translation>
+    </message>
+    <message>
+        <source>Levels</source>
+        <translation>Niveaux</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Forecaster</name>
@@ -1595,7 +1607,7 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
     </message>
     <message>
         <source>pick its faces in the view</source>
-        <translation>désignez ses faces dans la vue</translation>
+        <translation>faces à désigner</translation>
     </message>
     <message>
         <source>by its pressure</source>
@@ -2808,20 +2820,8 @@ Les barres croissent comme le logarithme du nombre</translation>
         <translation>endroits atteints</translation>
     </message>
     <message>
-        <source>Volume</source>
-        <translation>Volume</translation>
-    </message>
-    <message>
-        <source>off the CAD&apos;s</source>
-        <translation>écart à la CAO</translation>
-    </message>
-    <message>
         <source>Distance to surface</source>
         <translation>Distance à la surface</translation>
-    </message>
-    <message>
-        <source>First mesh by</source>
-        <translation>Premier maillage par</translation>
     </message>
     <message>
         <source>%1 %</source>
@@ -2864,10 +2864,6 @@ Les barres croissent comme le logarithme du nombre</translation>
         <translation>sur %1</translation>
     </message>
     <message>
-        <source>near (%1, %2, %3)</source>
-        <translation>près de (%1, %2, %3)</translation>
-    </message>
-    <message>
         <source>and %1 smaller ones</source>
         <translation>et %1 plus petits</translation>
     </message>
@@ -2882,6 +2878,18 @@ Les barres croissent comme le logarithme du nombre</translation>
     <message>
         <source>Save as PDF or HTML…</source>
         <translation>Enregistrer en PDF ou en HTML…</translation>
+    </message>
+    <message>
+        <source>Volume off the CAD&apos;s</source>
+        <translation>Écart de volume à la CAO</translation>
+    </message>
+    <message>
+        <source>volume %1, first mesh by %2</source>
+        <translation>volume %1, premier maillage par %2</translation>
+    </message>
+    <message>
+        <source>near %1</source>
+        <translation>près de %1</translation>
     </message>
 </context>
 <context>
@@ -3193,8 +3201,8 @@ Les barres croissent comme le logarithme du nombre</translation>
         <translation>taille</translation>
     </message>
     <message>
-        <source>factor of the natural size</source>
-        <translation>facteur de la taille naturelle</translation>
+        <source>× natural size</source>
+        <translation>× taille naturelle</translation>
     </message>
     <message>
         <source>A size, or a factor of the size that the walls ask for there</source>

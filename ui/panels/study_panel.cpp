@@ -73,10 +73,9 @@ void StudyPanel::make_tree() {
   tree_->setIndentation(12);
   tree_->setRootIsDecorated(false);
   tree_->setItemsExpandable(false);
-  tree_->setUniformRowHeights(true);
   tree_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   tree_->setAllColumnsShowFocus(true);
-  tree_->setTextElideMode(Qt::ElideRight);
+  tree_->setTextElideMode(Qt::ElideMiddle);  // names of an assembly often begin alike
   tree_->setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed);
   tree_->setContextMenuPolicy(Qt::CustomContextMenu);
   tree_->header()->setStretchLastSection(false);
