@@ -437,10 +437,6 @@
 <context>
     <name>lamella::ui::BodyPage</name>
     <message>
-        <source>%1&lt;br&gt;Volume %2&lt;br&gt;%L3 faces, %L4 triangles</source>
-        <translation>%1&lt;br&gt;Volume %2&lt;br&gt;%L3 faces, %L4 triangles</translation>
-    </message>
-    <message>
         <source>What the body is in the tool. It gives the body its color and its layers,
 and tells who keeps what bodies share in one mesh of all: inserts before
 cavities and channels, and these before the mold</source>
@@ -585,10 +581,6 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <translation>auto : %1</translation>
     </message>
     <message>
-        <source>auto: %1 to %2</source>
-        <translation>auto : %1 à %2</translation>
-    </message>
-    <message>
         <source>no bound</source>
         <translation>sans limite</translation>
     </message>
@@ -631,6 +623,22 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
     <message>
         <source>auto: as the layers</source>
         <translation>auto : comme les couches</translation>
+    </message>
+    <message>
+        <source>%1&lt;br&gt;Volume %2&lt;br&gt;%3, %L4 triangles</source>
+        <translation>%1&lt;br&gt;Volume %2&lt;br&gt;%3, %L4 triangles</translation>
+    </message>
+    <message>
+        <source>1 face</source>
+        <translation>1 face</translation>
+    </message>
+    <message>
+        <source>%L1 faces</source>
+        <translation>%L1 faces</translation>
+    </message>
+    <message>
+        <source>auto: %1–%2</source>
+        <translation>auto : %1–%2</translation>
     </message>
 </context>
 <context>
@@ -1067,10 +1075,6 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
         <translation>Montrer tous les corps</translation>
     </message>
     <message>
-        <source>Box with a margin of %1 %</source>
-        <translation>Boîte avec une marge de %1 %</translation>
-    </message>
-    <message>
         <source>Inside of %1</source>
         <translation>Intérieur de %1</translation>
     </message>
@@ -1093,6 +1097,10 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
     <message>
         <source>Add a face to %1</source>
         <translation>Ajouter une face à %1</translation>
+    </message>
+    <message>
+        <source>Box, margin %1 %</source>
+        <translation>Boîte, marge %1 %</translation>
     </message>
 </context>
 <context>

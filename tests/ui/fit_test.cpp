@@ -30,7 +30,7 @@ QStringList unfitting(const QWidget& window) {
     if (!text.isEmpty() && !wraps && widget->width() < widget->fontMetrics().size(0, text).width())
       found << text;
     if (const auto* combo = qobject_cast<QComboBox*>(widget))
-      if (combo->width() - 24 < combo->fontMetrics().horizontalAdvance(combo->currentText()))
+      if (combo->width() - 36 < combo->fontMetrics().horizontalAdvance(combo->currentText()))
         found << combo->currentText();
     const auto* area = qobject_cast<QAbstractScrollArea*>(widget);
     if (area && area->horizontalScrollBar()->maximum() > 0)

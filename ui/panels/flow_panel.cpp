@@ -112,7 +112,7 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
 
 QWidget* FlowPanel::make_settings() {
   auto* box = new QWidget;
-  box->setFixedWidth(290);
+  box->setFixedWidth(310);
   auto* layout = new QVBoxLayout(box);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(4);

@@ -85,7 +85,8 @@ void Overlay::paintEvent(QPaintEvent*) {
 void Overlay::paint_hint(QPainter& painter) const {
   painter.setFont(font());
   const double text_width = painter.fontMetrics().horizontalAdvance(hint_);
-  const QRectF box((width() - text_width) / 2 - 16, 14, text_width + 32, 32);
+  // Below, since legends are above.
+  const QRectF box((width() - text_width) / 2 - 16, height() - 84, text_width + 32, 32);
   painter.setPen(Qt::NoPen);
   painter.setBrush(QColor(0x1f, 0x29, 0x33, 225));
   painter.drawRoundedRect(box, 16, 16);
