@@ -92,6 +92,7 @@ void StudyPanel::make_tree() {
     const QModelIndex domain = model_->section(ItemKind::domain);
     tree_->setRowHidden(domain.row(), {}, model_->rowCount(domain) == 0);
   };
+  tree_->ensurePolished();  // or rows are laid out without the height that the style gives them
   expand();
   connect(model_, &QAbstractItemModel::modelReset, this, expand);
   connect(model_, &QAbstractItemModel::rowsInserted, this, expand);
