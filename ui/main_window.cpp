@@ -137,7 +137,7 @@ void MainWindow::make_body() {
   rows_->setStretchFactor(0, 1);
   rows_->setSizes({570, 230});
   columns_->setStretchFactor(1, 1);
-  columns_->setSizes({280, 840, 310});
+  columns_->setSizes({280, 820, 330});
   for (QSplitter* splitter : {rows_, columns_}) {
     splitter->setHandleWidth(8);
     splitter->setChildrenCollapsible(false);

@@ -119,7 +119,7 @@ bool MainWindow::save(bool ask_name) {
 
 bool MainWindow::may_drop() {
   if (!session_->modified() && !session_->mesh_unsaved()) return true;
-  QMessageBox box(QMessageBox::Question, tr("Unsaved changes"),
+  QMessageBox box(QMessageBox::NoIcon, tr("Unsaved changes"),
                   (session_->modified() ? tr("The study “%1” has changes that are not saved.")
                                         : tr("The mesh of “%1” is not saved."))
                       .arg(QString::fromStdString(session_->study().name)),
@@ -197,7 +197,7 @@ bool MainWindow::drop_result(const QStringList& files) {
   const QString ending = QFileInfo(files.front()).suffix().toLower();
   if (ending != "vtu" && ending != "vtk") return false;
   QMessageBox box(
-      QMessageBox::Question, tr("What is it?"),
+      QMessageBox::NoIcon, tr("What is it?"),
       tr("“%1” may be the result of another solver.").arg(QFileInfo(files.front()).fileName()),
       QMessageBox::Cancel, this);
   box.setInformativeText(tr("Its fields can show where the mesh of what is open must be finer."));

@@ -13,6 +13,7 @@
 #include <QSvgRenderer>
 #include <algorithm>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -80,7 +81,7 @@ class DrawnIcon : public QIconEngine {
   QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State) override {
     const int side = std::min(size.width(), size.height());
     const bool faint = mode == QIcon::Disabled;
-    QPixmap& made = drawn_[{side, faint}];
+    QPixmap& made = drawn_[{side, faint, theme::dark}];
     if (made.isNull()) made = render(path_, side, faint ? 0.35 : 1);
     return made;
   }
@@ -92,7 +93,7 @@ class DrawnIcon : public QIconEngine {
 
  private:
   QString path_;
-  std::map<std::pair<int, bool>, QPixmap> drawn_;
+  std::map<std::tuple<int, bool, bool>, QPixmap> drawn_;  // side, faint, of the dark theme
 };
 
 /// The icons that the style sheet names, in the colors of the theme, in a folder of their own.

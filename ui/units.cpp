@@ -1,6 +1,7 @@
 #include "ui/units.h"
 
 #include <QSettings>
+#include <cmath>
 
 namespace lamella::ui {
 
@@ -25,6 +26,12 @@ double per_unit() { return Units::get().inches() ? 25.4 : 1; }
 QString name() { return Units::get().inches() ? QStringLiteral("in") : QStringLiteral("mm"); }
 
 QString number(double mm, int digits) { return QString::number(mm / per_unit(), 'g', digits); }
+
+QString point(const Vec<3>& mm, int digits) {
+  const double none = 1e-6 * mm.cwiseAbs().maxCoeff();
+  const auto text = [&](double x) { return number(std::abs(x) < none ? 0 : x, digits); };
+  return QString("(%1, %2, %3)").arg(text(mm[0]), text(mm[1]), text(mm[2]));
+}
 
 QString length(double mm, int digits) { return number(mm, digits) + " " + name(); }
 

@@ -34,6 +34,8 @@ QString name();
 /// A length in the unit, without its name, and with it: `digits` significant ones.
 QString number(double mm, int digits = 4);
 QString length(double mm, int digits = 4);
+/// "(x, y, z)" without the unit; what is nothing beside the largest of them is 0.
+QString point(const Vec<3>& mm, int digits = 4);
 /// "40 × 30 × 2 mm"
 QString size(const Vec<3>& mm, int digits = 4);
 /// From mm² and mm³, to `decimals` places (of mm; two more of inches), with the unit.

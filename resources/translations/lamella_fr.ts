@@ -437,10 +437,6 @@
 <context>
     <name>lamella::ui::BodyPage</name>
     <message>
-        <source>%1&lt;br&gt;Volume %2&lt;br&gt;%L3 faces, %L4 triangles</source>
-        <translation>%1&lt;br&gt;Volume %2&lt;br&gt;%L3 faces, %L4 triangles</translation>
-    </message>
-    <message>
         <source>What the body is in the tool. It gives the body its color and its layers,
 and tells who keeps what bodies share in one mesh of all: inserts before
 cavities and channels, and these before the mold</source>
@@ -585,10 +581,6 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <translation>auto : %1</translation>
     </message>
     <message>
-        <source>auto: %1 to %2</source>
-        <translation>auto : %1 à %2</translation>
-    </message>
-    <message>
         <source>no bound</source>
         <translation>sans limite</translation>
     </message>
@@ -632,6 +624,22 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <source>auto: as the layers</source>
         <translation>auto : comme les couches</translation>
     </message>
+    <message>
+        <source>%1&lt;br&gt;Volume %2&lt;br&gt;%3, %L4 triangles</source>
+        <translation>%1&lt;br&gt;Volume %2&lt;br&gt;%3, %L4 triangles</translation>
+    </message>
+    <message>
+        <source>1 face</source>
+        <translation>1 face</translation>
+    </message>
+    <message>
+        <source>%L1 faces</source>
+        <translation>%L1 faces</translation>
+    </message>
+    <message>
+        <source>auto: %1–%2</source>
+        <translation>auto : %1–%2</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::CompareView</name>
@@ -665,10 +673,6 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
     <message>
         <source>Nodes</source>
         <translation>Nœuds</translation>
-    </message>
-    <message>
-        <source>Layers through the walls</source>
-        <translation>Couches à travers les parois</translation>
     </message>
     <message>
         <source>Conformity (0 is perfect)</source>
@@ -713,10 +717,6 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
     <message>
         <source>mean</source>
         <translation>moyenne</translation>
-    </message>
-    <message>
-        <source>5 % quantile</source>
-        <translation>quantile 5 %</translation>
     </message>
     <message>
         <source>conformity</source>
@@ -765,6 +765,14 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
     <message>
         <source>  (latest)</source>
         <translation>  (dernière)</translation>
+    </message>
+    <message>
+        <source>Layers per wall</source>
+        <translation>Couches par paroi</translation>
+    </message>
+    <message>
+        <source>Measured through the walls: the mean, and what 5 % of the wall area fall below</source>
+        <translation>Mesurées à travers les parois : la moyenne, et la valeur que 5 % de la surface des parois n’atteignent pas</translation>
     </message>
 </context>
 <context>
@@ -836,7 +844,7 @@ pas là. Un de tous les corps : leurs maillages s&apos;accordent.</translation>
     </message>
     <message>
         <source>box with a margin</source>
-        <translation>boîte avec une marge</translation>
+        <translation>boîte et marge</translation>
     </message>
     <message>
         <source>one of the bodies</source>
@@ -1067,10 +1075,6 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
         <translation>Montrer tous les corps</translation>
     </message>
     <message>
-        <source>Box with a margin of %1 %</source>
-        <translation>Boîte avec une marge de %1 %</translation>
-    </message>
-    <message>
         <source>Inside of %1</source>
         <translation>Intérieur de %1</translation>
     </message>
@@ -1093,6 +1097,10 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
     <message>
         <source>Add a face to %1</source>
         <translation>Ajouter une face à %1</translation>
+    </message>
+    <message>
+        <source>Box, margin %1 %</source>
+        <translation>Boîte, marge %1 %</translation>
     </message>
 </context>
 <context>
@@ -1479,6 +1487,18 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <source>%L1, up to %2</source>
         <translation>%L1, jusqu&apos;à %2</translation>
     </message>
+    <message>
+        <source>Arrows</source>
+        <translation>Flèches</translation>
+    </message>
+    <message>
+        <source>Lines</source>
+        <translation>Lignes</translation>
+    </message>
+    <message>
+        <source>Levels</source>
+        <translation>Niveaux</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Forecaster</name>
@@ -1595,7 +1615,7 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
     </message>
     <message>
         <source>pick its faces in the view</source>
-        <translation>désignez ses faces dans la vue</translation>
+        <translation>faces à désigner</translation>
     </message>
     <message>
         <source>by its pressure</source>
@@ -2808,20 +2828,8 @@ Les barres croissent comme le logarithme du nombre</translation>
         <translation>endroits atteints</translation>
     </message>
     <message>
-        <source>Volume</source>
-        <translation>Volume</translation>
-    </message>
-    <message>
-        <source>off the CAD&apos;s</source>
-        <translation>écart à la CAO</translation>
-    </message>
-    <message>
         <source>Distance to surface</source>
         <translation>Distance à la surface</translation>
-    </message>
-    <message>
-        <source>First mesh by</source>
-        <translation>Premier maillage par</translation>
     </message>
     <message>
         <source>%1 %</source>
@@ -2864,10 +2872,6 @@ Les barres croissent comme le logarithme du nombre</translation>
         <translation>sur %1</translation>
     </message>
     <message>
-        <source>near (%1, %2, %3)</source>
-        <translation>près de (%1, %2, %3)</translation>
-    </message>
-    <message>
         <source>and %1 smaller ones</source>
         <translation>et %1 plus petits</translation>
     </message>
@@ -2882,6 +2886,18 @@ Les barres croissent comme le logarithme du nombre</translation>
     <message>
         <source>Save as PDF or HTML…</source>
         <translation>Enregistrer en PDF ou en HTML…</translation>
+    </message>
+    <message>
+        <source>Volume off the CAD&apos;s</source>
+        <translation>Écart de volume à la CAO</translation>
+    </message>
+    <message>
+        <source>volume %1, first mesh by %2</source>
+        <translation>volume %1, premier maillage par %2</translation>
+    </message>
+    <message>
+        <source>near %1</source>
+        <translation>près de %1</translation>
     </message>
 </context>
 <context>
@@ -3193,8 +3209,8 @@ Les barres croissent comme le logarithme du nombre</translation>
         <translation>taille</translation>
     </message>
     <message>
-        <source>factor of the natural size</source>
-        <translation>facteur de la taille naturelle</translation>
+        <source>× natural size</source>
+        <translation>× taille naturelle</translation>
     </message>
     <message>
         <source>A size, or a factor of the size that the walls ask for there</source>

@@ -100,6 +100,32 @@ TEST_F(LookTest, AViewThatMovesIsDrawnCoarserAndWellAtRest) {
   EXPECT_LT(difference(at_rest, view()->grab().toImage()), 1e-3);
 }
 
+TEST_F(LookTest, WhatIsInSightStaysSoInANarrowerView) {
+  open_part("plate");
+  const auto sides = [&] {
+    const auto b = window_.view().bounds();
+    double left = 1e9, right = -1e9;
+    for (int corner = 0; corner < 8; ++corner) {
+      const double x =
+          view()
+              ->project(Vec<3>(b[corner & 1], b[2 + (corner >> 1 & 1)], b[4 + (corner >> 2)]))
+              .x();
+      left = std::min(left, x);
+      right = std::max(right, x);
+    }
+    return std::pair(left, view()->width() - right);
+  };
+  const QSize before = view()->size();
+  const auto margins = sides();
+  EXPECT_GT(std::min(margins.first, margins.second), 0);
+  view()->setFixedSize(before.width() / 3, before.height());
+  QTest::qWait(50);
+  EXPECT_GT(std::min(sides().first, sides().second), 0);
+  view()->setFixedSize(before);
+  QTest::qWait(50);
+  EXPECT_NEAR(sides().first, margins.first, 0.5);
+}
+
 TEST_F(LookTest, MeasuringWallsIsStoppedByEscapeAndByARun) {
   open_part("ribbed_tray");
   window_.view().set_color_by(ColorBy::thickness);

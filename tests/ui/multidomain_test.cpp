@@ -151,8 +151,7 @@ TEST_F(MultidomainTest, OneMeshOfAllBodiesIsChosenByNameAndUndone) {
   EXPECT_FALSE(study().bodies[2].visible);
   EXPECT_EQ(model()->rowCount(model()->section(ItemKind::body)), 3);
   EXPECT_FALSE(tree->isRowHidden(int(ItemKind::domain), {}));
-  EXPECT_EQ(model()->index_of({ItemKind::domain, 0}).data().toString(),
-            "Box with a margin of 10 %");
+  EXPECT_EQ(model()->index_of({ItemKind::domain, 0}).data().toString(), "Box, margin 10 %");
   EXPECT_FALSE(find<QWidget>("error_plot")->isHidden());
   EXPECT_FALSE(find<QWidget>("interface_size")->isHidden());
   EXPECT_FALSE(action(Act::forecast)->isEnabled()) << "nothing tells its nodes";

@@ -143,7 +143,8 @@ TEST_F(RealRunTest, BatchMakesTheSameMeshBitForBit) {
   const int status = std::system(line.c_str());
   ASSERT_TRUE(WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 4))
       << read_file(folder_ / "told").value();
-  EXPECT_EQ(read_file(folder_ / "batch.msh").value(), read_file(folder_ / "window.msh").value());
+  EXPECT_TRUE(read_file(folder_ / "batch.msh").value() ==
+              read_file(folder_ / "window.msh").value());
 }
 
 }  // namespace

@@ -220,7 +220,7 @@ void show_all_bodies(Session& session) {
 
 QString domain_title(const StudyDomain& domain) {
   if (const auto* margin = std::get_if<DomainMargin>(&domain.shape))
-    return Texts::tr("Box with a margin of %1 %").arg(100 * margin->share, 0, 'g', 4);
+    return Texts::tr("Box, margin %1 %").arg(100 * margin->share, 0, 'g', 4);
   if (const auto* body = std::get_if<DomainBody>(&domain.shape))
     return Texts::tr("Inside of %1").arg(QString::fromStdString(body->name));
   if (std::holds_alternative<ZoneBox>(domain.shape)) return Texts::tr("Box");

@@ -54,7 +54,7 @@ void toggle_face(Session& session, int group, const std::string& body, std::int3
 QString kind_title(GroupKind kind);
 /// "cavity", "mold".
 QString role_title(BodyRole role);
-/// "Box with a margin of 10 %"
+/// "Box, margin 10 %"
 QString domain_title(const StudyDomain& domain);
 
 }  // namespace lamella::ui

@@ -26,9 +26,10 @@ QString short_length(double mm) { return units::number(mm, 3); }
 QString size_text(const Part& part) {
   if (part.surface.points.empty()) return {};
   const Box<3> box = box_of(part.surface.points);
-  return BodyPage::tr("%1<br>Volume %2<br>%L3 faces, %L4 triangles")
-      .arg(units::size(box.hi - box.lo), units::volume(part.cad_volume))
-      .arg(part.surface.faces.size())
+  const std::size_t faces = part.surface.faces.size();
+  return BodyPage::tr("%1<br>Volume %2<br>%3, %L4 triangles")
+      .arg(units::size(box.hi - box.lo), units::volume(part.cad_volume),
+           faces == 1 ? BodyPage::tr("1 face") : BodyPage::tr("%L1 faces").arg(faces))
       .arg(part.surface.facets.size());
 }
 
@@ -207,7 +208,7 @@ void BodyPage::show_automatic() {
   }
   h_min_->set_automatic(short_length(low) == short_length(high)
                             ? tr("auto: %1").arg(units::length(low, 3))
-                            : tr("auto: %1 to %2").arg(short_length(low), units::length(high, 3)),
+                            : tr("auto: %1–%2").arg(units::number(low, 2), units::length(high, 2)),
                         low);
   h_max_->set_automatic(tr("no bound"), 200 * low);
   // A run has found out what automatic means.

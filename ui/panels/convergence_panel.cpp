@@ -33,7 +33,9 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   plots->setSpacing(8);
   nodes_ = new Plot(tr("Nodes"));
   nodes_->setObjectName("nodes_plot");
-  layers_ = new Plot(tr("Layers through the walls"));
+  layers_ = new Plot(tr("Layers per wall"));
+  layers_->setToolTip(
+      tr("Measured through the walls: the mean, and what 5 % of the wall area fall below"));
   layers_->set_decimals(2);
   conformity_ = new Plot(tr("Conformity (0 is perfect)"));
   conformity_->set_decimals(3);
@@ -138,7 +140,7 @@ void ConvergencePanel::save(const QString& file) {
 void ConvergencePanel::follow_iterations() {
   Series nodes{tr("nodes"), blue, {}};
   Series mean{tr("mean"), blue, {}};
-  Series low{tr("5 % quantile"), amber, {}};
+  Series low{tr("5 %"), amber, {}};
   Series conformity{tr("conformity"), blue, {}};
   Series mixed{tr("mixed elements"), amber, {}};
   Series error{tr("interface error"), blue, {}};
@@ -154,7 +156,7 @@ void ConvergencePanel::follow_iterations() {
     error.values.push_back(fuzzy ? r.interface_error : std::nan(""));
   }
   const bool domain = session_.study().domain.has_value();
-  nodes_->set_title(domain ? QString() : tr("Nodes"));
+  nodes_->set_title(domain && !nodes.values.empty() ? QString() : tr("Nodes"));
   nodes_->set_series(domain ? std::vector{nodes, mixed} : std::vector{nodes});
   conformity_->set_series({conformity});
   error_->set_series({error});
@@ -169,7 +171,7 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
   const auto& bodies = session_.study().bodies;
   const int selected = session_.selected();
   std::optional<double> asked;
-  QString title = tr("Layers through the walls");
+  QString title = tr("Layers per wall");
   if (selected >= 0 && selected < static_cast<int>(bodies.size())) {
     const BodySettings& body = bodies[static_cast<std::size_t>(selected)];
     asked = body.layers;
@@ -191,10 +193,7 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
     }
   }
   // Four plots leave little room.
-  if (session_.study().domain) {
-    title = tr("Layers");
-    low.name = tr("5 %");
-  }
+  if (session_.study().domain) title = tr("Layers");
   layers_->set_title(title);
   layers_->set_series({mean, low});
   layers_->set_target(session_.iterations().empty() ? std::nullopt : asked, tr("asked"));

@@ -64,10 +64,13 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
   layout->setContentsMargins(14, 8, 8, 8);
   layout->setSpacing(18);
   layout->addWidget(make_settings());
-  auto* middle = new QVBoxLayout;
-  middle->setSpacing(6);
+  auto* right = new QVBoxLayout;
+  right->setSpacing(6);
   auto* tools = new QHBoxLayout;
   tools->setSpacing(4);
+  actions[Act::flow_arrows]->setIconText(tr("Arrows"));
+  actions[Act::flow_lines]->setIconText(tr("Lines"));
+  actions[Act::flow_levels]->setIconText(tr("Levels"));
   for (const Act act : {Act::solve_flow, Act::flow_arrows, Act::flow_lines, Act::flow_levels}) {
     auto* button = new QToolButton;
     button->setDefaultAction(actions[act]);
@@ -76,21 +79,24 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
     tools->addWidget(button);
   }
   tools->addStretch(1);
-  middle->addLayout(tools);
+  right->addLayout(tools);
   source_ = make_source();
-  middle->addWidget(source_);
+  right->addWidget(source_);
   found_ = styled_label({}, "soft");
   found_->setObjectName("flow_found");
   found_->setTextFormat(Qt::RichText);
   found_->setWordWrap(true);
   found_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  middle->addWidget(found_, 1);
-  layout->addLayout(middle, 1);
+  auto* results = new QHBoxLayout;
+  results->setSpacing(18);
+  results->addWidget(found_, 1);
   residuals_ = new Plot(tr("Residual"));
   residuals_->setObjectName("residual_plot");
   residuals_->set_logarithmic(true);
   residuals_->set_decimals(10);
-  layout->addWidget(residuals_, 1);
+  results->addWidget(residuals_, 1);
+  right->addLayout(results, 1);
+  layout->addLayout(right, 1);
 
   wait_.setSingleShot(true);
   wait_.setInterval(250);

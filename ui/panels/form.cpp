@@ -6,6 +6,18 @@
 #include "ui/theme.h"
 
 namespace lamella::ui {
+namespace {
+
+/// Numbers without zeros at their end.
+class PlainNumberBox : public QDoubleSpinBox {
+ public:
+  using QDoubleSpinBox::QDoubleSpinBox;
+  QString textFromValue(double value) const override {
+    return locale().toString(value, 'f', QLocale::FloatingPointShortest);
+  }
+};
+
+}  // namespace
 
 QLabel* styled_label(const QString& text, const char* kind) {
   auto* l = new QLabel(text);
@@ -24,7 +36,7 @@ QSpinBox* integer_box(int low, int high, const char* name, const QString& tip) {
 
 QDoubleSpinBox* number_box(double low, double high, double step, const char* name,
                            const QString& tip) {
-  auto* box = new QDoubleSpinBox;
+  auto* box = new PlainNumberBox;
   box->setObjectName(name);
   box->setRange(low, high);
   box->setSingleStep(step);

@@ -12,8 +12,9 @@ namespace {
 
 constexpr std::size_t most_places = 40;
 
+/// Numbers stay whole; titles of columns may take two lines.
 QString cell(const QString& text) {
-  return "<td align='right' style='padding: 4px 12px 4px 0'>" + text + "</td>";
+  return "<td align='right' style='padding: 4px 14px 4px 0; white-space: nowrap'>" + text + "</td>";
 }
 
 }  // namespace
@@ -24,8 +25,6 @@ ReportPanel::ReportPanel(Session& session, QWidget* parent)
   setFrameShape(QFrame::NoFrame);
   document()->setDocumentMargin(14);
   setOpenLinks(false);
-  // Columns keep their numbers whole; notes have a width of their own.
-  setLineWrapMode(QTextEdit::NoWrap);
   connect(this, &QTextBrowser::anchorClicked, this, &ReportPanel::jump);
   connect(&Units::get(), &Units::changed, this, &ReportPanel::refresh);
   connect(&session, &Session::run_finished, this, &ReportPanel::refresh);
@@ -50,12 +49,16 @@ void ReportPanel::refresh() {
           .arg(state, tr("in %1 s").arg(outcome->seconds, 0, 'f', 1), theme::soft_text.name(),
                tr("Save as PDF or HTML…"), theme::accent.name());
   html += "<table cellspacing='0'><tr style='color:" + theme::soft_text.name() + "'>";
-  const QStringList titles{tr("Body"),         tr("Layers asked"),  tr("mean"),
-                           tr("5 %"),          tr("median"),        tr("places reached"),
-                           tr("Volume"),       tr("off the CAD's"), tr("Distance to surface"),
-                           tr("First mesh by")};
+  const QStringList titles{tr("Body"),
+                           tr("Layers asked"),
+                           tr("mean"),
+                           tr("5 %"),
+                           tr("median"),
+                           tr("places reached"),
+                           tr("Volume off the CAD's"),
+                           tr("Distance to surface")};
   for (int k = 0; k < titles.size(); ++k)
-    html += QString("<td align='%1' style='padding: 4px 12px 4px 0'>%2</td>")
+    html += QString("<td align='%1' valign='bottom' style='padding: 4px 14px 0 0'>%2</td>")
                 .arg(k == 0 ? "left" : "right", titles[k]);
   html += "</tr>";
   // Fuzzy borders have no faces that could be off.
@@ -63,28 +66,32 @@ void ReportPanel::refresh() {
   for (const BodyOutcome& body : outcome->bodies) {
     const double off =
         body.cad_volume > 0 ? (body.mesh_volume - body.cad_volume) / body.cad_volume * 100 : 0;
-    html += "<tr><td style='padding: 4px 12px 4px 0'><b>" +
+    html += "<tr><td style='padding: 4px 14px 4px 0'><b>" +
             QString::fromStdString(body.name).toHtmlEscaped() + "</b></td>";
     html += cell(QString::number(body.layers_asked));
     html += cell(QString::number(body.layers.mean, 'f', 2));
     html += cell(QString::number(body.layers.p5, 'f', 2));
     html += cell(QString::number(body.layers.p50, 'f', 2));
     html += cell(tr("%1 %").arg(body.layers.share_reached * 100, 0, 'f', 1));
-    html += cell(units::volume(body.mesh_volume));
     html += cell(tr("%1 %").arg(off, 0, 'f', 3));
     html += cell(fuzzy ? tr("–")
                        : tr("%1 of %2")
                              .arg(units::number(body.boundary_distance.largest(), 3),
-                                  units::length(body.chord_tolerance, 3)));
-    html += cell(QString::fromStdString(body.first_mesh_by).toHtmlEscaped()) + "</tr>";
+                                  units::length(body.chord_tolerance, 3))) +
+            "</tr>";
   }
   html += "</table>";
   html += interfaces_html();
-  for (const BodyOutcome& body : outcome->bodies)
-    for (const std::string& note : body.notes)
-      html += "<table width='760'><tr><td style='color:" + theme::soft_text.name() + "'>" +
-              QString::fromStdString(body.name + ": " + note).toHtmlEscaped() +
-              "</td></tr></table>";
+  const auto add_note = [&](const BodyOutcome& body, const QString& note) {
+    html += "<p style='color:" + theme::soft_text.name() + "; margin: 4px 0'>" +
+            (QString::fromStdString(body.name) + ": " + note).toHtmlEscaped() + "</p>";
+  };
+  for (const BodyOutcome& body : outcome->bodies) {
+    add_note(body,
+             tr("volume %1, first mesh by %2")
+                 .arg(units::volume(body.mesh_volume), QString::fromStdString(body.first_mesh_by)));
+    for (const std::string& note : body.notes) add_note(body, QString::fromStdString(note));
+  }
   html += places_html();
   setHtml(html);
 }
@@ -125,10 +132,7 @@ QString ReportPanel::places_html() const {
                        .arg(tr("Show"), theme::accent.name())) +
               cell(tr("%1 layers").arg(below[k].layers, 0, 'f', 1)) +
               cell(tr("on %1").arg(units::area(below[k].area))) +
-              cell(tr("near (%1, %2, %3)")
-                       .arg(units::number(below[k].at[0]), units::number(below[k].at[1]),
-                            units::number(below[k].at[2]))) +
-              "</tr>";
+              cell(tr("near %1").arg(units::point(below[k].at))) + "</tr>";
     html += "</table>";
     if (below.size() > most_places)
       html += "<p>" + tr("and %1 smaller ones").arg(below.size() - most_places) + "</p>";

@@ -78,7 +78,7 @@ void SizingPage::make_asked(Form* form) {
   asks_ = new QComboBox;
   asks_->setObjectName("asks");
   asks_->addItem(tr("size"));
-  asks_->addItem(tr("factor of the natural size"));
+  asks_->addItem(tr("× natural size"));
   asks_->setToolTip(tr("A size, or a factor of the size that the walls ask for there"));
   form->add(tr("Asks for"), asks_);
   value_ = number_box(1e-6, 1e6, 0.05, "asked_value",

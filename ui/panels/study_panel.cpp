@@ -73,10 +73,9 @@ void StudyPanel::make_tree() {
   tree_->setIndentation(12);
   tree_->setRootIsDecorated(false);
   tree_->setItemsExpandable(false);
-  tree_->setUniformRowHeights(true);
   tree_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   tree_->setAllColumnsShowFocus(true);
-  tree_->setTextElideMode(Qt::ElideRight);
+  tree_->setTextElideMode(Qt::ElideMiddle);  // names of an assembly often begin alike
   tree_->setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed);
   tree_->setContextMenuPolicy(Qt::CustomContextMenu);
   tree_->header()->setStretchLastSection(false);
@@ -93,6 +92,7 @@ void StudyPanel::make_tree() {
     const QModelIndex domain = model_->section(ItemKind::domain);
     tree_->setRowHidden(domain.row(), {}, model_->rowCount(domain) == 0);
   };
+  tree_->ensurePolished();  // or rows are laid out without the height that the style gives them
   expand();
   connect(model_, &QAbstractItemModel::modelReset, this, expand);
   connect(model_, &QAbstractItemModel::rowsInserted, this, expand);

@@ -61,8 +61,9 @@ void Forecaster::ask() {
 
 void Forecaster::follow() {
   if (!session_.services().forecast || session_.parts().empty()) return;
-  // One mesh of all bodies is not forecast.
-  if (session_.study().domain || (!asked_ && session_.study().sizing.empty())) {
+  // One mesh of all bodies is not forecast; sizes and a budget of memory want one without asking.
+  const Study& study = session_.study();
+  if (study.domain || (!asked_ && study.sizing.empty() && !study.options.memory)) {
     if (bodies_) {
       bodies_.reset();
       known_for_.clear();

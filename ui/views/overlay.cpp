@@ -85,7 +85,8 @@ void Overlay::paintEvent(QPaintEvent*) {
 void Overlay::paint_hint(QPainter& painter) const {
   painter.setFont(font());
   const double text_width = painter.fontMetrics().horizontalAdvance(hint_);
-  const QRectF box((width() - text_width) / 2 - 16, 14, text_width + 32, 32);
+  // Below, since legends are above.
+  const QRectF box((width() - text_width) / 2 - 16, height() - 84, text_width + 32, 32);
   painter.setPen(Qt::NoPen);
   painter.setBrush(QColor(0x1f, 0x29, 0x33, 225));
   painter.drawRoundedRect(box, 16, 16);
@@ -137,7 +138,13 @@ void Overlay::paint_legend(QPainter& painter) const {
         QRectF(bar.left() + bar.width() * k / bands, bar.bottom() + 3, bar.width() / bands, 18),
         int(Qt::AlignHCenter) | int(Qt::AlignTop), legend_.bands[k]);
   for (int k = 0; k <= ticks && bands == 0; ++k) {
-    const double value = (legend_.low + (legend_.high - legend_.low) * k / ticks) / unit;
+    const double range = (legend_.high - legend_.low) / unit;
+    double value = legend_.low / unit + range * k / ticks;
+    // Digits that the range tells apart: long numbers near 0 would run into their neighbors.
+    if (range > 0) {
+      const double last = std::pow(10, std::floor(std::log10(range)) - 2);
+      value = std::round(value / last) * last;
+    }
     const double x = bar.left() + bar.width() * k / ticks;
     const auto align = k == 0 ? Qt::AlignLeft : k == ticks ? Qt::AlignRight : Qt::AlignHCenter;
     const double left = k == 0 ? x : k == ticks ? x - 60 : x - 30;

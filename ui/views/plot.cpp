@@ -16,7 +16,7 @@ namespace {
 QString short_number(double value) {
   if (std::abs(value) >= 1e9) return QString::number(value, 'g', 3);
   if (std::abs(value) >= 1e6) return QString("%1 M").arg(value / 1e6, 0, 'g', 3);
-  if (std::abs(value) >= 1e4) return QString("%1 k").arg(value / 1e3, 0, 'g', 3);
+  if (std::abs(value) >= 1e3) return QString("%1 k").arg(value / 1e3, 0, 'g', 3);
   return QString::number(value, 'g', 4);
 }
 
@@ -198,8 +198,14 @@ void Plot::paintEvent(QPaintEvent*) {
     painter.setPen(QPen(theme::good, 1.3, Qt::DashLine));
     painter.drawLine(QPointF(a.left(), y_of(*target_)), QPointF(a.right(), y_of(*target_)));
     painter.setPen(theme::good);
-    painter.drawText(QRectF(a.left() + 4, y_of(*target_) - 17, 160, 16),
-                     Qt::AlignLeft | Qt::AlignBottom, target_name_);
+    // On the side of the line where nothing begins.
+    const double y = y_of(*target_);
+    const bool taken = std::any_of(series_.begin(), series_.end(), [&](const Series& s) {
+      const double above = s.values.empty() ? 0 : y - y_of(s.values.front());
+      return above > -3 && above < 22;
+    });
+    painter.drawText(QRectF(a.left() + 4, taken ? y + 1 : y - 17, 160, 16),
+                     Qt::AlignLeft | (taken ? Qt::AlignTop : Qt::AlignBottom), target_name_);
   }
   for (const Series& s : series_) {
     QPainterPath path;

@@ -10,6 +10,7 @@
 #include <vtkOpenGLState.h>
 #include <vtkRenderer.h>
 
+#include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QOpenGLContext>
@@ -20,6 +21,7 @@
 #include <cmath>
 
 #include "ui/theme.h"
+#include "ui/views/kept_memory.h"
 
 namespace lamella::ui {
 namespace {
@@ -153,6 +155,7 @@ void VtkView::initializeGL() {
   const auto* name = reinterpret_cast<const char*>(context_->functions()->glGetString(GL_RENDERER));
   const QByteArray device(name ? name : "");
   software_ = device.contains("llvmpipe") || device.contains("softpipe");
+  if (software_) keep_memory(*qApp);
   vtk_->drawn = 0;
   vtk_->rehearsed = false;
   vtk_->window->SetMultiSamples(software_ ? 0 : 8);
@@ -168,6 +171,16 @@ void VtkView::initializeGL() {
 
 void VtkView::resizeGL(int width, int height) {
   const double ratio = devicePixelRatioF();
+  vtkCamera* camera = vtk_->renderer->GetActiveCamera();
+  if (sized_ && width > 0 && height > 0) {
+    // What was in sight stays so, also where the view gets narrower than it was.
+    if (camera->GetParallelScale() != kept_scale_) {
+      seen_height_ = camera->GetParallelScale();
+      seen_width_ = seen_height_ * vtk_->width / vtk_->height;
+    }
+    kept_scale_ = std::max(seen_height_, seen_width_ * height / width);
+    camera->SetParallelScale(kept_scale_);
+  }
   vtk_->width = static_cast<int>(std::lround(width * ratio));
   vtk_->height = static_cast<int>(std::lround(height * ratio));
   vtk_->set_share(1);

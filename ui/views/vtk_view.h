@@ -96,6 +96,8 @@ class VtkView : public QOpenGLWidget {
   QPointer<QOpenGLContext> context_;
   std::array<double, 6> pending_fit_{};
   bool fit_pending_ = false;
+  // Half of what was in sight when the camera was moved last, mm; the scale that a resize gave.
+  double seen_width_ = 0, seen_height_ = 0, kept_scale_ = 0;
   bool sized_ = false;
   bool drawing_ = false;
   bool software_ = false;
