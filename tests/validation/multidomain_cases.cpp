@@ -90,14 +90,7 @@ Result<Scene> twisted_tube() {
   Result<std::vector<Part>> parts = load_parts(file);
   if (!parts) return parts.error();
   Scene scene{"twisted tube in a block", {}, std::move(*parts)};
-  // The solid with the larger box is the block.
-  const auto side = [](const Part& part) {
-    Box<3> box;
-    for (const Vec<3>& p : part.surface.points) box.add(p);
-    return (box.hi - box.lo).prod();
-  };
-  const std::size_t block = side(scene.parts[0]) > side(scene.parts[1]) ? 0 : 1;
-  scene.study.domain = StudyDomain{DomainBody{scene.parts[block].name}};
+  scene.study.domain = StudyDomain{DomainBodies{}};
   return scene;
 }
 
