@@ -166,8 +166,10 @@ double diagonal_of(const std::vector<Vec<3>>& points) {
 }
 
 std::string place_text(const Vec<3>& p) {
+  const double none = 1e-6 * p.cwiseAbs().maxCoeff();
+  const auto seen = [&](double x) { return std::abs(x) < none ? 0 : x; };
   char text[96];
-  std::snprintf(text, sizeof(text), "(%.6g, %.6g, %.6g)", p[0], p[1], p[2]);
+  std::snprintf(text, sizeof(text), "(%.6g, %.6g, %.6g)", seen(p[0]), seen(p[1]), seen(p[2]));
   return text;
 }
 

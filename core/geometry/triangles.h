@@ -56,7 +56,7 @@ double solid_angle(const std::array<Vec<3>, 3>& facet, const Vec<3>& x);
 /// Diagonal of the box of the points, mm.
 double diagonal_of(const std::vector<Vec<3>>& points);
 
-/// "(1, 2.5, 0)"
+/// "(1, 2.5, 0)"; what is nothing beside the largest of them is 0.
 std::string place_text(const Vec<3>& p);
 /// "1 edge", "4 edges"
 std::string counted(std::size_t n, const std::string& what);

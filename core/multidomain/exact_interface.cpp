@@ -251,30 +251,23 @@ struct Ball {
   double radius;
 };
 
-/// c(T) of the elements in the metric they were adapted to.
-double quality_in(const Exact& made, std::size_t e) {
-  const auto& nodes = made.mesh.elements[e];
-  return quality<3>(made.mesh.corners(nodes), mean_metric<3>(made.metric, nodes));
-}
+/// Elements below the quality wanted.
+struct Poor {
+  std::vector<Ball> places;
+  double shortage = 0;  ///< by what they fall short of it, all together
+};
 
-/// By what poor elements fall short, all together.
-double shortage(const Exact& made) {
-  double sum = 0;
-  for (std::size_t e = 0; e < made.mesh.elements.size(); ++e)
-    sum += std::max(0.0, poor_quality - quality_in(made, e));
-  return sum;
-}
-
-/// Around the elements that the cut has left too poor to be mended.
-std::vector<Ball> poor_places(const Exact& made) {
-  std::vector<Ball> poor;
-  for (std::size_t e = 0; e < made.mesh.elements.size(); ++e) {
-    if (quality_in(made, e) >= poor_quality) continue;
+Poor poor_elements(const Exact& made) {
+  Poor poor;
+  const std::vector<double> quality = element_qualities<3>(made.mesh, made.metric);
+  for (std::size_t e = 0; e < quality.size(); ++e) {
+    if (quality[e] >= poor_quality) continue;
     const Corners<3> p = made.mesh.corners(made.mesh.elements[e]);
     const Vec<3> center = (p[0] + p[1] + p[2] + p[3]) / 4;
     double radius = 0;
     for (const Vec<3>& x : p) radius = std::max(radius, (x - center).norm());
-    poor.push_back({center, radius});
+    poor.places.push_back({center, radius});
+    poor.shortage += poor_quality - quality[e];
   }
   return poor;
 }
@@ -330,7 +323,7 @@ struct Cutting {
     SimplexMesh<3> mesh = background.mesh;
     MetricField<3> metric = background.metric;
     std::vector<char> near(mesh.points.size(), 0);
-    if (!parallel_each(mesh.node_count(), adapt_params.threads, progress.portion(0, 0.2),
+    if (!parallel_each(mesh.node_count(), adapt_params.threads, progress.portion(0, 0.1),
                        [&](std::size_t i) {
                          const double share = finer(mesh.points[i + 1]);
                          near[i + 1] = share > 1;
@@ -338,7 +331,8 @@ struct Cutting {
                        }))
       return cancelled_error();
     // Where elements are larger than what is poor none of their nodes may be near.
-    const ElementLocator<3> locator(mesh);
+    const ElementLocator<3> locator(mesh, progress.portion(0.1, 0.2));
+    if (progress.cancelled()) return cancelled_error();
     for (const Ball& b : places)
       for (NodeId n : mesh.elements[locator.locate(b.center).element]) near[n] = 1;
     AdaptParams local = adapt_params;
@@ -434,22 +428,25 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   }
   const Cutting cutting{partition, surfaces, cut_params, adapt_params, params.wall, chords_at};
   Result<Exact> best = cutting.cut(background, progress.portion(0.4, 0.5));
-  for (int i = 0, idle = 0; best && !best->adapt.cancelled && i < recuts && idle < 2; ++i) {
-    const Progress again = progress.portion(0.5 + 0.25 * i / recuts, 0.5 + 0.25 * (i + 1) / recuts);
-    const std::vector<Ball> poor = poor_places(*best);
-    if (poor.empty() || static_cast<double>(poor.size()) >
-                            many_poor * static_cast<double>(best->mesh.elements.size()))
-      break;
-    const Result<void> ready = cutting.refine(background, poor, again.portion(0, 0.2));
-    Result<Exact> next = ready ? cutting.cut(background, again.portion(0.2, 1)) : ready.error();
-    if (!next && next.error().code != Code::cancelled) break;
-    best->adapt.cancelled = !next || next->adapt.cancelled;
-    if (best->adapt.cancelled) break;
-    const bool better = shortage(*next) < shortage(*best);
-    idle = better ? 0 : idle + 1;
-    if (better) best = std::move(next);
-  }
   if (!best) return best.error();
+  Poor poor = poor_elements(*best);
+  for (int i = 0, idle = 0; !best->adapt.cancelled && i < recuts && idle < 2; ++i) {
+    const Progress again = progress.portion(0.5 + 0.25 * i / recuts, 0.5 + 0.25 * (i + 1) / recuts);
+    if (poor.places.empty() || static_cast<double>(poor.places.size()) >
+                                   many_poor * static_cast<double>(best->mesh.elements.size()))
+      break;
+    const Result<void> ready = cutting.refine(background, poor.places, again.portion(0, 0.2));
+    Result<Exact> next = ready ? cutting.cut(background, again.portion(0.2, 1)) : ready.error();
+    best->adapt.cancelled = next ? next->adapt.cancelled : next.error().code == Code::cancelled;
+    // What fails here, for want of memory, leaves a mesh that is complete.
+    if (!next || best->adapt.cancelled) break;
+    Poor left = poor_elements(*next);
+    ++idle;
+    if (left.shortage >= poor.shortage) continue;
+    idle = 0;
+    poor = std::move(left);
+    best = std::move(next);
+  }
   if (!best->adapt.cancelled && chords_at) {
     const SimplexMesh<3> cut = std::move(best->mesh);
     best = cutting.held(std::move(*best), cut, {}, chords_at, progress.portion(0.75, 1));

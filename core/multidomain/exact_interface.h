@@ -38,10 +38,12 @@ struct Exact {
 /// From any mesh of the domain (one body) to a conforming mesh of the regions: it is adapted to the
 /// metric, with sizes along the borders small enough for the chord tolerance (chord_metric.h), once
 /// or twice, then cut along the borders (interface_cut.h), then adapted again with the interfaces
-/// held on `surfaces` within the chord tolerance. `metric` may be empty where there is `metric_at`.
+/// held on `surfaces` within the chord tolerance. Around elements that stay below a quality of .2
+/// the mesh is made finer and cut anew, some times and unless they are many; the mesh that falls
+/// short least counts. `metric` may be empty where there is `metric_at`.
 /// `surfaces`: the boundary of each region's zone, without the background; what a region without
-/// facets cuts out is its surface itself. Boundary nodes move in the boundary only. A cancel during
-/// the last adaption returns the valid mesh reached so far, with `adapt.cancelled` set. Errors:
+/// facets cuts out is its surface itself. Boundary nodes move in the boundary only. A cancel after
+/// the first cut returns the valid mesh reached so far, with `adapt.cancelled` set. Errors:
 /// bad_input (sizes of arrays, no elements), cancelled, memory.
 Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>& metric,
                                const Partition<3>& partition,

@@ -328,14 +328,7 @@ class BodyLoop {
 
   std::string largest_place() const {
     if (best_.below.empty()) return "";
-    Vec<3> x = best_.below.front().at;
-    // What is nothing beside the largest coordinate is 0 and no "-2.9e-16".
-    for (int k = 0; k < 3; ++k)
-      if (std::abs(x[k]) < 1e-6 * best_.below.front().at.cwiseAbs().maxCoeff()) x[k] = 0;
-    char text[120];
-    std::snprintf(text, sizeof text, "; the largest such place is near (%.4g, %.4g, %.4g) mm", x[0],
-                  x[1], x[2]);
-    return text;
+    return "; the largest such place is near " + place_text(best_.below.front().at) + " mm";
   }
 
   /// Takes the mesh as the next state, with metric, layers and record.
