@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/cli_commands.h"
+#include "core/base/freed_memory.h"
 #include "core/base/overloaded.h"
 
 namespace {
@@ -33,6 +34,7 @@ std::string command_line(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace lamella;
   using namespace lamella::cli;
+  keep_freed_memory();
   bool json = false;
   const Interrupt interrupt;
   try {

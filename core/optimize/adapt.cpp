@@ -29,15 +29,18 @@ struct Stage {
 /// a little energy at random, which lets defects of the mesh wander and meet (simulated annealing);
 /// then the worst elements; in 2D at last the nodes' places.
 template <int D>
-std::vector<Stage> stages(const AdaptParams& params) {
+std::vector<Stage> stages(const AdaptParams& params, bool coarse) {
   std::vector<Stage> all;
   Stage sizes;
   sizes.sweep.relaxation = params.relaxation;
   sizes.sweep.good_enough = D == 4 ? 0.7 : 0.3;
-  // In 4D too many of these leave elements that nothing mends afterwards.
-  sizes.rounds = D == 4 ? std::min(2, params.relaxed_sweeps) : params.relaxed_sweeps;
+  // In 4D more of these leave elements that nothing mends afterwards.
+  sizes.rounds = D == 4 ? std::min(1, params.relaxed_sweeps) : params.relaxed_sweeps;
   sizes.settled = D == 3 ? 0.7 : 0.4;
   sizes.count_moves = false;
+  // Nodes that the first sweeps over a coarse mesh put in too many cost twice: others take them
+  // out again.
+  if (D == 3 && coarse) sizes.sweep.split_above = 1.5;
   all.push_back(sizes);
 
   Stage average;
@@ -49,8 +52,8 @@ std::vector<Stage> stages(const AdaptParams& params) {
   average.settled = D == 4 ? 0.2 : 0.9;
   Stage hot = average;
   hot.rounds = 1;
-  hot.sweep.temperature = D == 2 ? 0.4 : 0.6;
-  for (int i = 0; i < (D == 2 ? 60 : D == 4 ? 3 : 2); ++i) {
+  hot.sweep.temperature = D == 2 ? 0.4 : D == 4 ? 0.8 : 0.6;
+  for (int i = 0; i < (D == 2 ? 60 : D == 4 ? 4 : 2); ++i) {
     all.push_back(hot);
     hot.sweep.temperature *= D == 2 ? 0.98 : 0.7;
   }
@@ -62,6 +65,10 @@ std::vector<Stage> stages(const AdaptParams& params) {
   worst.rounds = 8;
   worst.settled = 1e-4;
   all.push_back(worst);
+  if constexpr (D == 3) {
+    worst.sweep.strict = true;
+    all.push_back(worst);
+  }
   if constexpr (D == 2) {
     // Hardly a triangle is left that an operation would help: the places of the nodes are the rest.
     // Sizes are as good as they get, so that shapes count for more.
@@ -127,7 +134,7 @@ class Adaption {
   /// As many sweeps over the surroundings of poor elements, where they are a small part of the
   /// mesh: what is good already costs one look. Nothing when they are more than that.
   std::optional<std::size_t> mend(const SweepParams& sweep, int sweeps, const Progress& progress) {
-    std::vector<std::int32_t> patch = around_poor(sweep.attention);
+    std::vector<std::int32_t> patch = around_poor(sweep.attention, sweep.strict);
     const auto count = static_cast<std::size_t>(std::count(patch.begin(), patch.end(), 1));
     if (count > patch.size() / 8) return std::nullopt;
     if (count == 0) return 0;
@@ -232,7 +239,7 @@ class Adaption {
 
  private:
   /// [element] 1 for those that touch a neighbor of a node of an element below the quality.
-  std::vector<std::int32_t> around_poor(double quality) const {
+  std::vector<std::int32_t> around_poor(double quality, bool strict) const {
     RatingKernel<D> kernel;
     kernel.element_mean = params_.element_mean;
     kernel.size_average = params_.size_average;
@@ -244,6 +251,7 @@ class Adaption {
       for (std::size_t n = 1; n < own.size(); ++n) own[n] = carrier.carry(work_.metric[n]);
     }
     const auto& carried = own.empty() ? work_.metric : own;
+    if (strict) kernel.metrics = &carried;
     std::vector<Rating> ratings(work_.elements.size());
     constexpr std::size_t chunk = 4096;
     parallel_each(
@@ -376,7 +384,8 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
   if (params.memory_limit)
     adaption.set_most_elements(*params.memory_limit * 1e6 / bytes_an_element<D>);
 
-  const std::vector<Stage> all = stages<D>(params);
+  const bool coarse = report.forecast_nodes > 4 * static_cast<double>(adaption.node_count());
+  const std::vector<Stage> all = stages<D>(params, coarse);
   int rounds = 0;
   for (const Stage& stage : all) rounds += stage.rounds;
   int past = 0;

@@ -107,14 +107,20 @@ inline constexpr double usual_size_weight = D == 2   ? 1.8
 template <int D>
 struct RatingKernel {
   static constexpr double mean = 1.0 / (D + 1);
+  static constexpr double strictness = 2.8;
   double relaxation = 1;  ///< of the shape
   double size_weight = usual_size_weight<D>;
   MetricMean element_mean = MetricMean::m;
   SizeAverage size_average = SizeAverage::l2;
   const std::vector<Vec<D>>* points = nullptr;
+  /// [node] where the quality is bounded by `strictness` times the shape in the densest metric of
+  /// the nodes as well.
+  const std::vector<Packed<D>>* metrics = nullptr;
 
   /// (3.2) and (3.4), the fast case.
-  bool plain() const { return element_mean == MetricMean::m && size_average == SizeAverage::l2; }
+  bool plain() const {
+    return element_mean == MetricMean::m && size_average == SizeAverage::l2 && !metrics;
+  }
   /// Metric of the element, (3.2), (3.12) or (3.16), from the sum of what its nodes carry.
   Packed<D> element_metric(const RealFace<D>& f, const Packed<D>& apex_carried) const {
     Packed<D> m = f.metric_sum;
@@ -138,6 +144,24 @@ struct RatingKernel {
     return sum * sum;
   }
 
+  /// The least shape of {face, apex} in the densest metric of its nodes, and in those that are as
+  /// dense but for a few percent.
+  double shape_in_densest(const RealFace<D>& f, const Packed<D>& apex, const PackedDual<D>& e,
+                          double volume) const {
+    std::array<const Packed<D>*, D + 1> own;
+    std::array<double, D + 1> det;
+    own[D] = &apex;
+    for (int k = 0; k < D; ++k) own[k] = &(*metrics)[f.nodes[k]];
+    for (int k = 0; k <= D; ++k) det[k] = own[k]->det();
+    const double dense = 0.9 * *std::max_element(det.begin(), det.end());
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= D; ++k)
+      if (det[k] >= dense)
+        least = std::min(least, std::sqrt(det[k]) / power_of_size<D>(trace_product(*own[k], e)));
+    constexpr double edges = 0.5 * D * (D + 1);
+    return least * volume * std::sqrt((1 << D) * mean) * power_of_size<D>(edges);
+  }
+
   Rating operator()(const RealFace<D>& f, const Vec<D>& apex, const Packed<D>& apex_carried) const {
     const Vec<D> w = apex - f.center;
     const double volume = f.normal.dot(w);
@@ -152,8 +176,10 @@ struct RatingKernel {
     // |T|_M over the measure of the unit simplex.
     const double v = volume * std::sqrt(m.det() * ((1 << D) * mean));
     const double shape = v * inverse;
-    return {std::min(relaxation * shape, std::min(h, inverse)),
-            1 / shape + size_weight * (h + inverse - 2)};
+    double quality = std::min(relaxation * shape, std::min(h, inverse));
+    if (metrics)
+      quality = std::min(quality, strictness * shape_in_densest(f, apex_carried, e, volume));
+    return {quality, 1 / shape + size_weight * (h + inverse - 2)};
   }
 };
 

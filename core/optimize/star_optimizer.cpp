@@ -65,9 +65,13 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
 }
 
 template <int D>
-void StarOptimizer<D>::set_weights(double relaxation, double size_weight) {
+void StarOptimizer<D>::set_weights(double relaxation, double size_weight, bool strict) {
   if (size_weight == 0) size_weight = usual_size_weight<D>;
-  if (kernel_.relaxation == relaxation && kernel_.size_weight == size_weight) return;
+  strict = strict && plain_ && kernel_.size_average == SizeAverage::l2;
+  if (kernel_.relaxation == relaxation && kernel_.size_weight == size_weight &&
+      strict == (kernel_.metrics != nullptr))
+    return;
+  kernel_.metrics = strict ? &metric_ : nullptr;
   kernel_.relaxation = relaxation;
   kernel_.size_weight = size_weight;
   faces_.rate_elements(nodes(), 0, topo_.elements.size(), kernel_, rating_);
@@ -76,7 +80,7 @@ void StarOptimizer<D>::set_weights(double relaxation, double size_weight) {
 template <int D>
 std::size_t StarOptimizer<D>::sweep(const SweepParams& params, const Progress& progress) {
   sweep_ = params;
-  set_weights(params.relaxation, params.size_weight);
+  set_weights(params.relaxation, params.size_weight, params.strict);
   std::size_t operations = 0;
   // The seed says at which node the sweep begins; nodes born in it wait for the next.
   const auto count = static_cast<std::uint64_t>(topo_.points.size()) - 1;

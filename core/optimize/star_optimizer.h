@@ -28,6 +28,7 @@ struct SweepParams {
   double temperature = 0;        ///< energy that a reconnection may cost, at random
   std::size_t most_elements = std::numeric_limits<std::size_t>::max();  ///< of a block
   bool moves_only = false;  ///< nodes move, nothing is reconnected
+  bool strict = false;      ///< quality is taken in the densest metric of the nodes as well
   double attention = 2;     ///< c(T) above which nodes are left alone altogether
 };
 
@@ -79,7 +80,7 @@ class StarOptimizer {
     NodeId a = 0, b = 0;             ///< node or edge that is removed
   };
 
-  void set_weights(double relaxation, double size_weight);
+  void set_weights(double relaxation, double size_weight, bool strict);
   void open_pair(std::int32_t e, std::int32_t other, const Facet& face);
   bool process_node(NodeId s);
   bool process_edge(NodeId s, NodeId n, bool is_long);

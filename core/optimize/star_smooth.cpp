@@ -92,6 +92,16 @@ void StarOptimizer<D>::offer_moves(NodeId s, const BoundarySite& site) {
     for (NodeId n : link_) add(n);
   }
   if (weight > 0) offer_at(center / weight);
+  if (!sweep_.strict) return;
+  for (const double part : {0.3, 0.1}) {
+    if (site.on_feature) {
+      for (int k = 0; k < 2; ++k) offer_at(old + part * (topo_.points[site.ends[k]] - old));
+    } else if (site.boundary) {
+      for (const auto& r : ring_) offer_at(old + part * (topo_.points[r.node] - old));
+    } else {
+      for (NodeId n : link_) offer_at(old + part * (topo_.points[n] - old));
+    }
+  }
 }
 
 #define LAMELLA_INSTANTIATE(D)                                                               \

@@ -6,7 +6,7 @@ namespace lamella {
 
 template <int D>
 std::size_t StarOptimizer<D>::open_blocking(const Progress& progress) {
-  set_weights(1, 0);
+  set_weights(1, 0, false);
   std::vector<char> on_wall(topo_.points.size(), 0);
   for (std::size_t e = 0; e < topo_.elements.size(); ++e)
     if (topo_.alive(static_cast<std::int32_t>(e)) && topo_.is_virtual(static_cast<std::int32_t>(e)))

@@ -4,9 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdlib>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
+
+#include "core/base/freed_memory.h"
 
 namespace lamella::ui {
 
@@ -16,8 +15,7 @@ void keep_memory(QObject& owner) {
   if (kept) return;
   kept = true;
   constexpr std::size_t block = std::size_t(16) << 20, page = 4096;
-  mallopt(M_MMAP_THRESHOLD, int(2 * block));  // the most that glibc allows
-  mallopt(M_TRIM_THRESHOLD, int(32 * block));
+  keep_freed_memory();
   // Blocks of this thread's heap, which go back to it: pages that another thread has touched stay.
   std::array<char*, 4> blocks{};
   for (char*& b : blocks) b = static_cast<char*>(std::malloc(block));
