@@ -17,12 +17,13 @@ namespace lamella::ui {
 Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   setObjectName("welcome");
   auto* outer = new QVBoxLayout(this);
-  outer->setContentsMargins(40, 40, 40, 40);
+  outer->setContentsMargins(40, 16, 40, 16);
   outer->addStretch(2);
 
   drop_zone_ = new QFrame;
   drop_zone_->setObjectName("drop_zone");
-  drop_zone_->setFixedSize(700, 260);
+  drop_zone_->setFixedWidth(700);
+  drop_zone_->setMinimumHeight(220);
   auto* zone = new QVBoxLayout(drop_zone_);
   zone->setSpacing(8);
   zone->addStretch(1);
@@ -48,7 +49,7 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   zone->addWidget(open, 0, Qt::AlignCenter);
   zone->addStretch(1);
   outer->addWidget(drop_zone_, 0, Qt::AlignCenter);
-  outer->addSpacing(26);
+  outer->addSpacing(18);
 
   auto* or_label = new QLabel(tr("or start with a sample part"));
   or_label->setObjectName("soft");
