@@ -226,7 +226,6 @@ void MainWindow::make_tool_bar() {
   add(Act::correct_near, tr("Correct near"));
   bar->addSeparator();
   add(Act::section, tr("Section"));
-  add(Act::measure, tr("Measure"));
   add(Act::export_mesh, tr("Export"));
   add(Act::save_picture, tr("Picture"));
   auto* space = new QWidget;

@@ -33,11 +33,12 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   plots->setSpacing(8);
   nodes_ = new Plot(tr("Nodes"));
   nodes_->setObjectName("nodes_plot");
-  layers_ = new Plot(tr("Layers per wall"));
+  layers_ = new Plot(tr("Layers"));
   layers_->setToolTip(
       tr("Measured through the walls: the mean, and what 5 % of the wall area fall below"));
   layers_->set_decimals(2);
-  conformity_ = new Plot(tr("Conformity (0 is perfect)"));
+  conformity_ = new Plot(tr("Conformity"));
+  conformity_->setToolTip(tr("How far elements are from what the metric asks, 0 is perfect"));
   conformity_->set_decimals(3);
   // The first mesh knows nothing of the metric: orders of magnitude lie between it and the rest.
   conformity_->set_logarithmic(true);
@@ -165,7 +166,6 @@ void ConvergencePanel::follow_iterations() {
   const bool domain = session_.study().domain.has_value();
   nodes_->set_title(domain && !nodes.values.empty() ? QString() : tr("Nodes"));
   nodes_->set_series(domain ? std::vector{nodes, mixed} : std::vector{nodes});
-  conformity_->set_title(domain ? tr("Conformity") : tr("Conformity (0 is perfect)"));
   conformity_->set_series({conformity});
   quality_->set_series({quality});
   error_->set_series({error});
@@ -180,7 +180,7 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
   const auto& bodies = session_.study().bodies;
   const int selected = session_.selected();
   std::optional<double> asked;
-  QString title = tr("Layers per wall");
+  QString title = tr("Layers");
   if (selected >= 0 && selected < static_cast<int>(bodies.size())) {
     const BodySettings& body = bodies[static_cast<std::size_t>(selected)];
     asked = body.layers;

@@ -17,13 +17,13 @@ namespace lamella::ui {
 Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   setObjectName("welcome");
   auto* outer = new QVBoxLayout(this);
-  outer->setContentsMargins(40, 16, 40, 16);
+  outer->setContentsMargins(20, 12, 20, 12);
   outer->addStretch(2);
 
   drop_zone_ = new QFrame;
   drop_zone_->setObjectName("drop_zone");
-  drop_zone_->setFixedWidth(700);
-  drop_zone_->setMinimumHeight(220);
+  drop_zone_->setFixedWidth(640);
+  drop_zone_->setMinimumHeight(200);
   auto* zone = new QVBoxLayout(drop_zone_);
   zone->setSpacing(8);
   zone->addStretch(1);
@@ -57,7 +57,7 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   outer->addWidget(or_label);
   outer->addSpacing(10);
   auto* samples = new QHBoxLayout;
-  samples->setSpacing(12);
+  samples->setSpacing(10);
   samples->addStretch(1);
   const std::tuple<const char*, QString, QString> parts[] = {
       {"ribbed_tray", tr("Ribbed tray"), tr("Ribs, bosses and fillets")},
@@ -73,7 +73,7 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
     card->setIcon(QIcon(QString(":/icons/sample-%1.svg").arg(name)));
     card->setIconSize(QSize(96, 64));
     card->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
-    card->setFixedSize(130, 116);
+    card->setFixedSize(120, 108);
     card->setCursor(Qt::PointingHandCursor);
     connect(card, &QToolButton::clicked, this,
             [this, name = QString(name)] { Q_EMIT sample_chosen(name); });

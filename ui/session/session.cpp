@@ -425,7 +425,7 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
   arrange_bodies(study, read.parts);
   for (std::size_t k = first_new; k < read.parts.size(); ++k) {
     const Part& part = read.parts[k];
-    Q_EMIT logged(tr("%1: %2, %3 triangles on %4 faces, volume %5")
+    Q_EMIT logged(tr("%1: %2, %L3 triangles on %4 faces, volume %5")
                       .arg(text(part.name), box_size(part.surface))
                       .arg(part.surface.facets.size())
                       .arg(part.surface.faces.size())
