@@ -165,19 +165,19 @@ void Plot::paintEvent(QPaintEvent*) {
   bold.setWeight(QFont::DemiBold);
   painter.setFont(small);
   double right = a.right();
-  const double line = legend_below() ? 20 : 0;
+  const double lower = legend_below() ? 20 : 0;
   if (series_.size() > 1 && count() > 0) {
     for (auto s = series_.rbegin(); s != series_.rend(); ++s) {
       const double w = painter.fontMetrics().horizontalAdvance(s->name);
       painter.setPen(theme::soft_text);
-      painter.drawText(QRectF(right - w, 4 + line, w + 2, 20), Qt::AlignLeft | Qt::AlignVCenter,
+      painter.drawText(QRectF(right - w, 4 + lower, w + 2, 20), Qt::AlignLeft | Qt::AlignVCenter,
                        s->name);
       painter.setPen(QPen(s->color, 2.5, Qt::SolidLine, Qt::RoundCap));
-      painter.drawLine(QPointF(right - w - 18, 14 + line), QPointF(right - w - 6, 14 + line));
+      painter.drawLine(QPointF(right - w - 18, 14 + lower), QPointF(right - w - 6, 14 + lower));
       right -= w + 30;
     }
   }
-  if (line > 0) right = a.right();
+  if (lower > 0) right = a.right();
   painter.setFont(bold);
   painter.setPen(theme::text);
   painter.drawText(
