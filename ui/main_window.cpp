@@ -100,10 +100,10 @@ void MainWindow::make_body() {
   columns_ = new QSplitter(Qt::Horizontal, central);
   layout->addWidget(columns_, 1);
   study_ = new StudyPanel(*session_, *actions_, columns_);
-  study_->setMinimumWidth(250);
+  study_->setMinimumWidth(264);
   rows_ = new QSplitter(Qt::Vertical, columns_);
   properties_ = new PropertiesPanel(*session_, *forecaster_, *actions_, columns_);
-  properties_->setMinimumWidth(300);
+  properties_->setMinimumWidth(316);
   stack_ = new QStackedWidget(rows_);
   welcome_ = new Welcome(*actions_);
   view_ = new ModelView(*session_, *actions_);

@@ -175,7 +175,7 @@ void MainWindow::ask_picture() {
   if (QFileInfo(file).suffix().isEmpty()) file += ".png";
   const auto chosen = std::max<qsizetype>(0, kinds.indexOf(kind));
   QSize size = chosen < qsizetype(std::size(sizes)) ? sizes[chosen] : QSize();
-  if (size.isNull() && chosen > 0) {
+  if (size.isEmpty() && chosen > 0) {
     constexpr int most = 16384;  // what renderers draw at once
     bool given = false;
     size = wide(QInputDialog::getInt(this, tr("Save picture"), tr("Width in pixels"), 2560, 16,

@@ -836,7 +836,7 @@ pas là. Un de tous les corps : leurs maillages s&apos;accordent.</translation>
     </message>
     <message>
         <source>one of all bodies</source>
-        <translation>un de tous les corps</translation>
+        <translation>un pour tous</translation>
     </message>
     <message>
         <source>Meshes</source>
@@ -3266,7 +3266,7 @@ Les barres croissent comme le logarithme du nombre</translation>
     </message>
     <message>
         <source>× natural size</source>
-        <translation>× taille naturelle</translation>
+        <translation>× naturelle</translation>
     </message>
     <message>
         <source>A size, or a factor of the size that the walls ask for there</source>

@@ -78,6 +78,7 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   form->add(tr("Body"), body_);
   area_ = styled_label({}, "soft");
   area_->setObjectName("group_area");
+  area_->setWordWrap(true);
   form->add(tr("Area"), area_);
   layout->addLayout(form);
   layout->addWidget(styled_label(tr("Faces"), "section_title"));

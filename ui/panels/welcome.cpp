@@ -17,12 +17,12 @@ namespace lamella::ui {
 Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   setObjectName("welcome");
   auto* outer = new QVBoxLayout(this);
-  outer->setContentsMargins(20, 12, 20, 12);
+  outer->setContentsMargins(16, 12, 16, 12);
   outer->addStretch(2);
 
   drop_zone_ = new QFrame;
   drop_zone_->setObjectName("drop_zone");
-  drop_zone_->setFixedWidth(640);
+  drop_zone_->setFixedWidth(590);
   drop_zone_->setMinimumHeight(200);
   auto* zone = new QVBoxLayout(drop_zone_);
   zone->setSpacing(8);
@@ -73,7 +73,7 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
     card->setIcon(QIcon(QString(":/icons/sample-%1.svg").arg(name)));
     card->setIconSize(QSize(96, 64));
     card->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
-    card->setFixedSize(120, 108);
+    card->setFixedSize(110, 108);
     card->setCursor(Qt::PointingHandCursor);
     connect(card, &QToolButton::clicked, this,
             [this, name = QString(name)] { Q_EMIT sample_chosen(name); });

@@ -32,7 +32,7 @@ class Plot : public QWidget {
   void set_logarithmic(bool on);
   /// Decimals of the values shown on hover.
   void set_decimals(int decimals) { decimals_ = decimals; }
-  QSize minimumSizeHint() const override { return {165, 130}; }
+  QSize minimumSizeHint() const override { return {125, 130}; }
 
  Q_SIGNALS:
   void hovered(int index);
