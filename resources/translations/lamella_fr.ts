@@ -711,8 +711,8 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <translation>conformité</translation>
     </message>
     <message>
-        <source>mixed elements</source>
-        <translation>éléments mixtes</translation>
+        <source>mixed</source>
+        <translation>mixtes</translation>
     </message>
     <message>
         <source>interface error</source>

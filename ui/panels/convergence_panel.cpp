@@ -149,7 +149,7 @@ void ConvergencePanel::follow_iterations() {
   Series low{tr("5 %"), amber, {}};
   Series conformity{tr("conformity"), blue, {}};
   Series quality{tr("worst quality"), blue, {}};
-  Series mixed{tr("mixed elements"), amber, {}};
+  Series mixed{tr("mixed"), amber, {}};
   Series error{tr("interface error"), blue, {}};
   for (const IterationRecord& r : records()) {
     const bool measured = r.layers.places > 0;
