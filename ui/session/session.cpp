@@ -192,6 +192,12 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
   params.chord_tolerance = study_->options.chord_tolerance;
   params.angle_tolerance = study_->options.angle_tolerance;
   if (add && !parts_->empty()) params = read_with_;
+  // What is added is in the unit of the STL that is there.
+  if (add && unit == 0 && !parts_->empty()) {
+    unit = 1;
+    for (const PartSource& source : sources_)
+      if (is_stl(source.file)) unit = source.unit;
+  }
   begin(Activity::loading,
         [this, files, add, params, unit](const Progress& progress) -> Worker::Done {
           std::vector<StudyInput> inputs;
