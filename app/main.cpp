@@ -253,6 +253,7 @@ int main(int argc, char** argv) {
          "FIELD");
   option("flow", "arrows, lines, levels: what of the flow is drawn", "LIST");
   option("dark", "the dark theme");
+  option("size", "of the window", "WIDTHxHEIGHT");
   option("select", "group, sizing, cut or domain whose properties are shown", "KIND");
   option("tab", "tab of the results, from 0", "K");
   option("dialog", "export, preferences, shortcuts, journal or search: that instead of the window",
@@ -282,6 +283,8 @@ int main(int argc, char** argv) {
   ui::apply_theme(application, QSettings().value("dark", false).toBool() || parser.isSet("dark"));
   ui::MainWindow window(window_services(
       QStandardPaths::writableLocation(QStandardPaths::CacheLocation).toStdString() + "/samples"));
+  if (const QStringList size = parser.value("size").split('x'); size.size() == 2)
+    window.resize(size[0].toInt(), size[1].toInt());
   window.show();
   if (parser.isSet("leave")) {
     while (!window.windowHandle()->isExposed())

@@ -100,10 +100,10 @@ void MainWindow::make_body() {
   columns_ = new QSplitter(Qt::Horizontal, central);
   layout->addWidget(columns_, 1);
   study_ = new StudyPanel(*session_, *actions_, columns_);
-  study_->setMinimumWidth(250);
+  study_->setMinimumWidth(264);
   rows_ = new QSplitter(Qt::Vertical, columns_);
   properties_ = new PropertiesPanel(*session_, *forecaster_, *actions_, columns_);
-  properties_->setMinimumWidth(300);
+  properties_->setMinimumWidth(316);
   stack_ = new QStackedWidget(rows_);
   welcome_ = new Welcome(*actions_);
   view_ = new ModelView(*session_, *actions_);
@@ -172,8 +172,10 @@ void MainWindow::make_menus() {
        {Act::zone_ball, Act::zone_box, Act::zone_cylinder, Act::zone_half_space, line,
         Act::add_group, Act::pick_faces, Act::pick_flood, line, Act::correct_near,
         Act::correct_face, Act::add_sphere, Act::add_box, Act::add_cylinder, line, Act::add_cut});
-  fill(tr("&Mesh"),
-       {Act::run, Act::pause, Act::cancel, Act::forecast, line, Act::solve_flow, Act::overlaps});
+  fill(tr("&Mesh"), {Act::run, Act::pause, Act::cancel, Act::forecast, line, Act::overlaps});
+  fill(tr("&Results"),
+       {Act::solve_flow, Act::flow_arrows, Act::flow_lines, Act::flow_levels, line, Act::measure,
+        Act::ellipsoid, Act::compare, line, Act::export_mesh, Act::save_report, Act::save_picture});
   fill(tr("&View"), {Act::section,
                      Act::section_x,
                      Act::section_y,
@@ -184,14 +186,6 @@ void MainWindow::make_menus() {
                      Act::edges,
                      Act::features,
                      Act::perspective,
-                     Act::compare,
-                     line,
-                     Act::flow_arrows,
-                     Act::flow_lines,
-                     Act::flow_levels,
-                     line,
-                     Act::measure,
-                     Act::ellipsoid,
                      line,
                      Act::fit,
                      Act::box_zoom,
@@ -237,11 +231,11 @@ void MainWindow::make_tool_bar() {
   auto* space = new QWidget;
   space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   bar->addWidget(space);
-  bar->addAction((*actions_)[Act::undo]);
-  bar->addAction((*actions_)[Act::redo]);
-  for (const Act act : {Act::undo, Act::redo})
+  for (const Act act : {Act::search, Act::undo, Act::redo}) {
+    bar->addAction((*actions_)[act]);
     if (auto* button = qobject_cast<QToolButton*>(bar->widgetForAction((*actions_)[act])))
       button->setToolButtonStyle(Qt::ToolButtonIconOnly);
+  }
 }
 
 void MainWindow::make_status_bar() {
@@ -304,17 +298,28 @@ void MainWindow::connect_session() {
     else
       banner_->show_message(Banner::Kind::info, tr("Mesh written: %1").arg(file), notes);
   });
-  connect(session_, &Session::unit_assumed, this, [this](const QString& file, const QString& size) {
-    const auto again = [this, file](double unit) {
-      return [this, file, unit] {
-        if (may_drop()) session_->open({file.toStdString()}, false, unit);
-      };
-    };
-    banner_->show_message(
-        Banner::Kind::info, tr("An STL has no unit: read as millimeters, %1.").arg(size),
-        tr("If that is not its size, read it again in its own unit."),
-        {{tr("Inches"), again(25.4)}, {tr("Centimeters"), again(10)}, {tr("Meters"), again(1000)}});
-  });
+  connect(session_, &Session::unit_guessed, this, &MainWindow::confirm_unit);
+}
+
+void MainWindow::confirm_unit(const QString& file, const QString& size, double guess) {
+  const std::pair<double, QString> units[] = {
+      {1, tr("Millimeters")}, {10, tr("Centimeters")}, {1000, tr("Meters")}, {25.4, tr("Inches")}};
+  std::vector<Banner::Button> buttons;
+  QString guessed;
+  for (const auto& [unit, name] : units) {
+    if (unit == guess) {
+      guessed = name.toLower();
+      buttons.insert(buttons.begin(), {tr("That is right"), [] {}});
+    } else {
+      buttons.push_back({name, [this, file, again = unit] {
+                           if (may_drop()) session_->open({file.toStdString()}, false, again);
+                         }});
+    }
+  }
+  banner_->show_message(
+      Banner::Kind::info,
+      tr("An STL has no unit: by its size it is in %1, that is %2.").arg(guessed, size),
+      tr("If that is not its size, read it again in its own unit."), buttons);
 }
 
 void MainWindow::connect_actions() {

@@ -75,6 +75,8 @@ class MainWindow : public QMainWindow {
   void ask_report();
   /// Result of another solver, to correct the mesh by.
   void ask_result();
+  /// Tells in what unit an STL was read, which is to be confirmed.
+  void confirm_unit(const QString& file, const QString& size, double guess);
   /// True when a dropped file was taken for such a result, or for nothing.
   bool drop_result(const QStringList& files);
   void report_run();

@@ -3,6 +3,7 @@
 #include <QEventLoop>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QInputDialog>
 #include <QMessageBox>
 #include <QMimeData>
 #include <QPushButton>
@@ -164,6 +165,7 @@ void MainWindow::ask_picture() {
   QStringList kinds;
   for (const QSize& size : sizes)
     kinds << tr("PNG, %1 × %2 pixels (*.png)").arg(size.width()).arg(size.height());
+  kinds << tr("PNG of another width (*.png)");
   const QString name = QString::fromStdString(session_->study().name) + ".png";
   QString kind;
   QString file = QFileDialog::getSaveFileName(this, tr("Save picture"),
@@ -172,7 +174,15 @@ void MainWindow::ask_picture() {
   if (file.isEmpty()) return;
   if (QFileInfo(file).suffix().isEmpty()) file += ".png";
   const auto chosen = std::max<qsizetype>(0, kinds.indexOf(kind));
-  const QImage image = chosen == 0 ? view_->picture() : view_->picture(sizes[chosen]);
+  QSize size = chosen < qsizetype(std::size(sizes)) ? sizes[chosen] : QSize();
+  if (size.isEmpty() && chosen > 0) {
+    constexpr int most = 16384;  // what renderers draw at once
+    bool given = false;
+    size = wide(QInputDialog::getInt(this, tr("Save picture"), tr("Width in pixels"), 2560, 16,
+                                     most, 1, &given));
+    if (!given) return;
+  }
+  const QImage image = chosen == 0 ? view_->picture() : view_->picture(size);
   if (image.save(file)) {
     banner_->show_message(Banner::Kind::done, tr("Picture written"), file);
   } else {

@@ -675,18 +675,6 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <translation>Nœuds</translation>
     </message>
     <message>
-        <source>Conformity (0 is perfect)</source>
-        <translation>Conformité (0 est parfait)</translation>
-    </message>
-    <message>
-        <source>Interface error (L2)</source>
-        <translation>Erreur d&apos;interface (L2)</translation>
-    </message>
-    <message>
-        <source>Of the filling ratio, relative to the body: the largest of all bodies</source>
-        <translation>Du taux de remplissage, relative au corps : la plus grande de tous les corps</translation>
-    </message>
-    <message>
         <source>Iteration</source>
         <translation>Itération</translation>
     </message>
@@ -723,8 +711,8 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <translation>conformité</translation>
     </message>
     <message>
-        <source>mixed elements</source>
-        <translation>éléments mixtes</translation>
+        <source>mixed</source>
+        <translation>mixtes</translation>
     </message>
     <message>
         <source>interface error</source>
@@ -767,12 +755,36 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
         <translation>  (dernière)</translation>
     </message>
     <message>
-        <source>Layers per wall</source>
-        <translation>Couches par paroi</translation>
-    </message>
-    <message>
         <source>Measured through the walls: the mean, and what 5 % of the wall area fall below</source>
         <translation>Mesurées à travers les parois : la moyenne, et la valeur que 5 % de la surface des parois n’atteignent pas</translation>
+    </message>
+    <message>
+        <source>Conformity</source>
+        <translation>Conformité</translation>
+    </message>
+    <message>
+        <source>How far elements are from what the metric asks, 0 is perfect</source>
+        <translation>Écart des éléments à ce que demande la métrique, 0 est parfait</translation>
+    </message>
+    <message>
+        <source>Worst quality</source>
+        <translation>Pire qualité</translation>
+    </message>
+    <message>
+        <source>Of all elements by c(T), 1 is best</source>
+        <translation>De tous les éléments, par c(T), 1 est le mieux</translation>
+    </message>
+    <message>
+        <source>Interface L2</source>
+        <translation>Interface L2</translation>
+    </message>
+    <message>
+        <source>L2 error of the filling ratio, relative to the body: the largest of all bodies</source>
+        <translation>Erreur L2 du taux de remplissage, rapportée au corps : la plus grande de tous les corps</translation>
+    </message>
+    <message>
+        <source>worst quality</source>
+        <translation>pire qualité</translation>
     </message>
 </context>
 <context>
@@ -823,12 +835,8 @@ there. One of all bodies: their meshes fit together.</source>
 pas là. Un de tous les corps : leurs maillages s&apos;accordent.</translation>
     </message>
     <message>
-        <source>one for each body</source>
-        <translation>un par corps</translation>
-    </message>
-    <message>
         <source>one of all bodies</source>
-        <translation>un de tous les corps</translation>
+        <translation>un pour tous</translation>
     </message>
     <message>
         <source>Meshes</source>
@@ -996,6 +1004,10 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
         <source>Cylinder of the domain</source>
         <translation>Cylindre du domaine</translation>
     </message>
+    <message>
+        <source>one per body</source>
+        <translation>un par corps</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::DomainPage</name>
@@ -1101,6 +1113,10 @@ elles, ou le gradient du taux de remplissage comme dans la thèse</translation>
     <message>
         <source>Box, margin %1 %</source>
         <translation>Boîte, marge %1 %</translation>
+    </message>
+    <message>
+        <source>near %1</source>
+        <translation>près de %1</translation>
     </message>
 </context>
 <context>
@@ -1649,6 +1665,26 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <source> MPa</source>
         <translation> MPa</translation>
     </message>
+    <message>
+        <source>Faces by name</source>
+        <translation>Faces par nom</translation>
+    </message>
+    <message>
+        <source>All faces that have this name in the CAD file</source>
+        <translation>Toutes les faces qui ont ce nom dans le fichier CAO</translation>
+    </message>
+    <message>
+        <source>Correct near it</source>
+        <translation>Corriger auprès</translation>
+    </message>
+    <message>
+        <source>Puts a sphere with a size of its own around the group</source>
+        <translation>Met une sphère avec sa propre taille autour du groupe</translation>
+    </message>
+    <message>
+        <source>Faces by name of %1</source>
+        <translation>Faces par nom de %1</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Journal</name>
@@ -1894,10 +1930,6 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
     <message>
         <source>Mesh written: %1</source>
         <translation>Maillage écrit : %1</translation>
-    </message>
-    <message>
-        <source>An STL has no unit: read as millimeters, %1.</source>
-        <translation>Un STL n&apos;a pas d&apos;unité : lu en millimètres, %1.</translation>
     </message>
     <message>
         <source>If that is not its size, read it again in its own unit.</source>
@@ -2260,6 +2292,30 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
 Made with %1.</source>
         <translation>Maillages tétraédriques anisotropes pour le moulage par injection. Licence Apache 2.0.
 Réalisé avec %1.</translation>
+    </message>
+    <message>
+        <source>&amp;Results</source>
+        <translation>&amp;Résultats</translation>
+    </message>
+    <message>
+        <source>Millimeters</source>
+        <translation>Millimètres</translation>
+    </message>
+    <message>
+        <source>That is right</source>
+        <translation>C’est juste</translation>
+    </message>
+    <message>
+        <source>An STL has no unit: by its size it is in %1, that is %2.</source>
+        <translation>Un STL n’a pas d’unité : d’après sa taille il est en %1, soit %2.</translation>
+    </message>
+    <message>
+        <source>PNG of another width (*.png)</source>
+        <translation>PNG d’une autre largeur (*.png)</translation>
+    </message>
+    <message>
+        <source>Width in pixels</source>
+        <translation>Largeur en pixels</translation>
     </message>
 </context>
 <context>
@@ -2935,10 +2991,6 @@ Les barres croissent comme le logarithme du nombre</translation>
         <translation>Ouverture du maillage %1</translation>
     </message>
     <message>
-        <source>%1: %2, %3 triangles on %4 faces, volume %5</source>
-        <translation>%1 : %2, %3 triangles sur %4 faces, volume %5</translation>
-    </message>
-    <message>
         <source>Drop the domain</source>
         <translation>Retirer le domaine</translation>
     </message>
@@ -3053,6 +3105,10 @@ Les barres croissent comme le logarithme du nombre</translation>
     <message>
         <source>Laying the solver&apos;s field on %L1 nodes</source>
         <translation>Pose du champ du solveur sur %L1 nœuds</translation>
+    </message>
+    <message>
+        <source>%1: %2, %L3 triangles on %4 faces, volume %5</source>
+        <translation>%1 : %2, %L3 triangles sur %4 faces, volume %5</translation>
     </message>
 </context>
 <context>
@@ -3210,7 +3266,7 @@ Les barres croissent comme le logarithme du nombre</translation>
     </message>
     <message>
         <source>× natural size</source>
-        <translation>× taille naturelle</translation>
+        <translation>× naturelle</translation>
     </message>
     <message>
         <source>A size, or a factor of the size that the walls ask for there</source>
@@ -3239,10 +3295,6 @@ grossier, et demande que les directions soient gardées</translation>
         <translation>Croissance au-dehors</translation>
     </message>
     <message>
-        <source>keep the directions</source>
-        <translation>garder les directions</translation>
-    </message>
-    <message>
         <source>Scales the stretched elements of the walls instead of making them
 equal in all directions: fewer elements</source>
         <translation>Réduit les éléments étirés des parois au lieu de les rendre
@@ -3263,6 +3315,10 @@ equal in all directions: fewer elements</source>
     <message>
         <source>all bodies</source>
         <translation>tous les corps</translation>
+    </message>
+    <message>
+        <source>keep directions</source>
+        <translation>garder les directions</translation>
     </message>
 </context>
 <context>

@@ -92,6 +92,24 @@ TEST_F(MainWindowTest, UnitOfAnStlIsToldAndCanBeChanged) {
   EXPECT_FALSE(window_.banner().isVisible()) << "it was told";
 }
 
+TEST_F(MainWindowTest, UnitOfAnStlIsGuessedByItsSizeAndConfirmed) {
+  for (const auto& [scale, unit] : {std::pair(1 / 25.4, 25.4), std::pair(1e-3, 1000.0)}) {
+    write_box_stl(folder_ / "small.stl", scale * Vec<3>(30, 20, 4));
+    open("small.stl");
+    EXPECT_NEAR(session().parts()[0].cad_volume, 30 * 20 * 4, 0.1);
+    EXPECT_EQ(session().study().inputs.at(0).unit, unit);
+    EXPECT_TRUE(window_.banner().message().contains(unit == 1000 ? "meters" : "inches"));
+    const auto buttons = window_.banner().findChildren<QPushButton*>();
+    const auto right = std::find_if(buttons.begin(), buttons.end(), [](const QPushButton* b) {
+      return b->text() == "That is right";
+    });
+    ASSERT_NE(right, buttons.end());
+    (*right)->click();
+    EXPECT_FALSE(window_.banner().isVisible());
+    EXPECT_EQ(session().study().inputs.at(0).unit, unit);
+  }
+}
+
 TEST_F(MainWindowTest, BadFileGivesABannerWithAHintAndKeepsTheStudy) {
   open("box.stl");
   std::ofstream(folder_ / "bad.step") << "this is no STEP file\n";

@@ -110,7 +110,7 @@ class MultidomainTest : public WindowFixture {
       if (name.ends_with(".lamella"))
         session().open_study(folder_ / name);
       else
-        session().open({folder_ / name}, add);
+        session().open({folder_ / name}, add, 1);
       ASSERT_TRUE(wait_idle());
       add = true;
     }

@@ -3,7 +3,9 @@
 #include <QCoreApplication>
 #include <algorithm>
 
+#include "core/geometry/triangles.h"
 #include "core/study/domain.h"
+#include "ui/box_of.h"
 #include "ui/session/session.h"
 
 namespace lamella::ui {
@@ -103,6 +105,26 @@ void add_sizing(Session& session, const std::string& body, const QString& name,
   const int index = static_cast<int>(study.sizing.size()) - 1;
   session.edit(what, std::move(study));
   session.select_item({ItemKind::sizing, index});
+}
+
+void correct_near_group(Session& session, int index) {
+  const BoundaryGroup& group = session.study().groups[static_cast<std::size_t>(index)];
+  for (const Part& part : session.parts()) {
+    if (part.name != group.body && !(group.body.empty() && session.parts().size() == 1)) continue;
+    const auto facets = facets_of(group, part.surface);
+    if (!facets || facets->empty()) continue;
+    std::vector<Vec<3>> points;
+    for (const std::int32_t f : *facets)
+      for (const auto node : part.surface.facets[static_cast<std::size_t>(f)])
+        points.push_back(part.surface.points[static_cast<std::size_t>(node)]);
+    const auto [low, high] = box_of(points);
+    // A point gate is smaller than the region around it.
+    const double reach =
+        std::max(0.75 * (high - low).norm(), 0.02 * diagonal_of(part.surface.points));
+    add_sizing(session, part.name, Texts::tr("near %1").arg(QString::fromStdString(group.name)),
+               SphereShape{0.5 * (low + high), reach});
+    return;
+  }
 }
 
 void add_cut(Session& session, const Vec<3>& origin, const Vec<3>& normal) {

@@ -17,6 +17,8 @@ void add_group(Session& session, GroupKind kind, const std::string& body,
                std::vector<std::int32_t> faces);
 void add_sizing(Session& session, const std::string& body, const QString& name,
                 const SizingShape& shape);
+/// A sphere around the faces of the group, with a size of its own. Nothing where it has none.
+void correct_near_group(Session& session, int group);
 void add_cut(Session& session, const Vec<3>& origin, const Vec<3>& normal);
 
 /// Changes one entry; steps one after another with the same `merge` (not 0) become one.

@@ -33,23 +33,29 @@ ConvergencePanel::ConvergencePanel(Session& session, QWidget* parent)
   plots->setSpacing(8);
   nodes_ = new Plot(tr("Nodes"));
   nodes_->setObjectName("nodes_plot");
-  layers_ = new Plot(tr("Layers per wall"));
+  layers_ = new Plot(tr("Layers"));
   layers_->setToolTip(
       tr("Measured through the walls: the mean, and what 5 % of the wall area fall below"));
   layers_->set_decimals(2);
-  conformity_ = new Plot(tr("Conformity (0 is perfect)"));
+  conformity_ = new Plot(tr("Conformity"));
+  conformity_->setToolTip(tr("How far elements are from what the metric asks, 0 is perfect"));
   conformity_->set_decimals(3);
   // The first mesh knows nothing of the metric: orders of magnitude lie between it and the rest.
   conformity_->set_logarithmic(true);
-  error_ = new Plot(tr("Interface error (L2)"));
+  quality_ = new Plot(tr("Worst quality"));
+  quality_->setObjectName("quality_plot");
+  quality_->setToolTip(tr("Of all elements by c(T), 1 is best"));
+  quality_->set_decimals(3);
+  error_ = new Plot(tr("Interface L2"));
   error_->setObjectName("error_plot");
-  error_->setToolTip(tr("Of the filling ratio, relative to the body: the largest of all bodies"));
+  error_->setToolTip(
+      tr("L2 error of the filling ratio, relative to the body: the largest of all bodies"));
   error_->set_decimals(4);
   error_->set_logarithmic(true);
-  for (Plot* plot : {nodes_, layers_, conformity_, error_}) {
+  for (Plot* plot : all_plots()) {
     plots->addWidget(plot, 1);
     connect(plot, &Plot::clicked, &session, &Session::show_iteration);
-    for (Plot* other : {nodes_, layers_, conformity_, error_})
+    for (Plot* other : all_plots())
       if (other != plot) connect(plot, &Plot::hovered, other, &Plot::set_hovered);
   }
   layout->addWidget(plots_, 1);
@@ -142,7 +148,8 @@ void ConvergencePanel::follow_iterations() {
   Series mean{tr("mean"), blue, {}};
   Series low{tr("5 %"), amber, {}};
   Series conformity{tr("conformity"), blue, {}};
-  Series mixed{tr("mixed elements"), amber, {}};
+  Series quality{tr("worst quality"), blue, {}};
+  Series mixed{tr("mixed"), amber, {}};
   Series error{tr("interface error"), blue, {}};
   for (const IterationRecord& r : records()) {
     const bool measured = r.layers.places > 0;
@@ -150,6 +157,7 @@ void ConvergencePanel::follow_iterations() {
     mean.values.push_back(measured ? r.layers.mean : std::nan(""));
     low.values.push_back(measured ? r.layers.p5 : std::nan(""));
     conformity.values.push_back(r.conformity);
+    quality.values.push_back(r.quality_min);
     // Without mixed elements every border lies on faces of the mesh.
     const bool fuzzy = r.mixed > 0;
     mixed.values.push_back(fuzzy ? static_cast<double>(r.mixed) : std::nan(""));
@@ -159,6 +167,7 @@ void ConvergencePanel::follow_iterations() {
   nodes_->set_title(domain && !nodes.values.empty() ? QString() : tr("Nodes"));
   nodes_->set_series(domain ? std::vector{nodes, mixed} : std::vector{nodes});
   conformity_->set_series({conformity});
+  quality_->set_series({quality});
   error_->set_series({error});
   error_->setVisible(domain);
   show_layers(mean, low);
@@ -171,7 +180,7 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
   const auto& bodies = session_.study().bodies;
   const int selected = session_.selected();
   std::optional<double> asked;
-  QString title = tr("Layers per wall");
+  QString title = tr("Layers");
   if (selected >= 0 && selected < static_cast<int>(bodies.size())) {
     const BodySettings& body = bodies[static_cast<std::size_t>(selected)];
     asked = body.layers;
@@ -192,7 +201,7 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
       }
     }
   }
-  // Four plots leave little room.
+  // Five plots leave little room.
   if (session_.study().domain) title = tr("Layers");
   layers_->set_title(title);
   layers_->set_series({mean, low});
@@ -209,7 +218,7 @@ void ConvergencePanel::follow_shown() {
         all.begin(), all.end(), [&](const IterationRecord& r) { return r.iteration == iteration; });
     marked = at == all.end() ? -1 : static_cast<int>(at - all.begin());
   }
-  for (Plot* plot : {nodes_, layers_, conformity_, error_}) plot->set_marked(marked);
+  for (Plot* plot : all_plots()) plot->set_marked(marked);
   const QSignalBlocker block(slider_);
   slider_->setEnabled(last > 0);
   back_->setEnabled(shown > 0);

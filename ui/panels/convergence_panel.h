@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QWidget>
+#include <array>
 
 #include "core/study/record.h"
 #include "ui/views/plot.h"
@@ -26,6 +27,9 @@ class ConvergencePanel : public QWidget {
   void save(const QString& file);
 
  private:
+  std::array<Plot*, 5> all_plots() const {
+    return {nodes_, layers_, conformity_, quality_, error_};
+  }
   std::vector<IterationRecord> records() const;
   void follow_iterations();
   void follow_shown();
@@ -37,7 +41,8 @@ class ConvergencePanel : public QWidget {
   Plot* nodes_;
   Plot* layers_;
   Plot* conformity_;
-  Plot* error_;  // at the borders of one mesh of all bodies
+  Plot* quality_;  // of the worst element
+  Plot* error_;    // at the borders of one mesh of all bodies
   QSlider* slider_;
   QLabel* position_;
   QToolButton* back_;

@@ -68,7 +68,7 @@ DomainForm::DomainForm(Session& session, QWidget* parent)
   rows_->setContentsMargins(0, 0, 0, 0);
   meshes_ = choice("meshes", tr("One for each body: every body alone, as if the others were not\n"
                                 "there. One of all bodies: their meshes fit together."));
-  meshes_->addItems({tr("one for each body"), tr("one of all bodies")});
+  meshes_->addItems({tr("one per body"), tr("one of all bodies")});
   rows_->add(tr("Meshes"), meshes_);
   domain_ = choice("domain", tr("What the mesh of all bodies fills"));
   domain_->addItem(tr("the bodies alone"), bodies);

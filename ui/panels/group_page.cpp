@@ -4,17 +4,20 @@
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QMenu>
 #include <QPushButton>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <numbers>
+#include <set>
 
 #include "core/geometry/soup.h"
 #include "ui/actions/actions.h"
 #include "ui/commands/study_edits.h"
 #include "ui/panels/form.h"
 #include "ui/session/session.h"
+#include "ui/theme.h"
 #include "ui/units.h"
 
 namespace lamella::ui {
@@ -75,6 +78,7 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   form->add(tr("Body"), body_);
   area_ = styled_label({}, "soft");
   area_->setObjectName("group_area");
+  area_->setWordWrap(true);
   form->add(tr("Area"), area_);
   layout->addLayout(form);
   layout->addWidget(styled_label(tr("Faces"), "section_title"));
@@ -89,6 +93,16 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   angle_->setValue(20);
   flood->addWidget(angle_);
   layout->addLayout(flood);
+  by_name_ = new QToolButton;
+  by_name_->setObjectName("wide");
+  by_name_->setText(tr("Faces by name"));
+  by_name_->setToolTip(tr("All faces that have this name in the CAD file"));
+  by_name_->setPopupMode(QToolButton::InstantPopup);
+  by_name_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  auto* names = new QMenu(by_name_);
+  names->setObjectName("face_names");
+  by_name_->setMenu(names);
+  layout->addWidget(by_name_);
   faces_ = new QListWidget;
   faces_->setObjectName("group_faces");
   faces_->setAccessibleName(tr("Faces"));
@@ -98,6 +112,10 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   layout->addWidget(faces_, 1);
   auto* take = new QPushButton(tr("Take out"));
   layout->addWidget(take, 0, Qt::AlignLeft);
+  correct_ = new QPushButton(icon("sphere"), tr("Correct near it"));
+  correct_->setObjectName("correct_near_group");
+  correct_->setToolTip(tr("Puts a sphere with a size of its own around the group"));
+  layout->addWidget(correct_, 0, Qt::AlignLeft);
 
   const auto set_angle = [this, &actions] {
     actions[Act::pick_flood]->setData(angle_->value() * degree);
@@ -132,6 +150,17 @@ GroupPage::GroupPage(Session& session, Actions& actions, QWidget* parent)
   connect(given_, &QComboBox::activated, this, set_gate);
   connect(value_, &QDoubleSpinBox::valueChanged, this, set_gate);
   connect(take, &QPushButton::clicked, this, &GroupPage::remove_chosen);
+  connect(correct_, &QPushButton::clicked, this, [this] {
+    if (group()) correct_near_group(session_, session_.item().index);
+  });
+  connect(names, &QMenu::triggered, this, [this](QAction* chosen) {
+    const std::string name = chosen->data().toString().toStdString();
+    edit_group(session_, session_.item().index, tr("Faces by name of %1"), [&](BoundaryGroup& g) {
+      g.body = part_;
+      if (std::find(g.face_names.begin(), g.face_names.end(), name) == g.face_names.end())
+        g.face_names.push_back(name);
+    });
+  });
   faces_->installEventFilter(this);
 }
 
@@ -168,6 +197,21 @@ void GroupPage::remove_chosen() {
   });
 }
 
+void GroupPage::show_names(const Part* part) {
+  by_name_->menu()->clear();
+  std::set<std::string> names;
+  if (part)
+    for (const auto& face : part->surface.faces)
+      if (!face.name.empty()) names.insert(face.name);
+  for (const std::string& name : names) {
+    // What is written like a key of the menu is none.
+    QAction* entry = by_name_->menu()->addAction(QString::fromStdString(name).replace('&', "&&"));
+    entry->setData(QString::fromStdString(name));
+  }
+  by_name_->setVisible(!names.empty());
+  part_ = part ? part->name : std::string();
+}
+
 void GroupPage::refresh() {
   const BoundaryGroup* g = group();
   if (!g) return;
@@ -185,6 +229,7 @@ void GroupPage::refresh() {
   const Part* part = nullptr;
   for (const Part& p : session_.parts())
     if (p.name == g->body || (g->body.empty() && session_.parts().size() == 1)) part = &p;
+  show_names(part);
   body_->setText(part ? QString::fromStdString(part->name) : tr("that of the first face picked"));
   const auto add = [this](const QString& text, List list, std::size_t place) {
     auto* item = new QListWidgetItem(text, faces_);
@@ -209,6 +254,7 @@ void GroupPage::refresh() {
             .arg(flood.angle / degree, 0, 'f', 0),
         flood_list, k);
   }
+  correct_->setEnabled(part && faces_->count() > 0);
   if (!part || faces_->count() == 0) {
     area_->setText(tr("pick its faces in the view"));
     return;

@@ -10,6 +10,12 @@ class QFormLayout;
 class QLabel;
 class QLineEdit;
 class QListWidget;
+class QPushButton;
+class QToolButton;
+
+namespace lamella {
+struct Part;
+}
 
 namespace lamella::ui {
 
@@ -30,8 +36,13 @@ class GroupPage : public QWidget {
  private:
   const BoundaryGroup* group() const;
   void remove_chosen();
+  /// The names that faces of the part have, to choose from.
+  void show_names(const Part* part);
 
   Session& session_;
+  QToolButton* by_name_;
+  QPushButton* correct_;
+  std::string part_;  // of the names
   QLineEdit* name_;
   QComboBox* kind_;
   QComboBox* given_;

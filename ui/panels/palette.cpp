@@ -3,10 +3,16 @@
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QPainter>
+#include <QStyledItemDelegate>
 #include <QVBoxLayout>
+
+#include "ui/theme.h"
 
 namespace lamella::ui {
 namespace {
+
+enum Role { action_role = Qt::UserRole, keys_role };
 
 QString title_of(const QAction& action) {
   return action.text().remove('&').remove(QString::fromUtf8("…"));
@@ -18,6 +24,19 @@ bool has_all(const QString& text, const QStringList& words) {
     if (!text.contains(word, Qt::CaseInsensitive)) return false;
   return true;
 }
+
+/// The entry with its keys at the right edge.
+class KeysBeside : public QStyledItemDelegate {
+ public:
+  using QStyledItemDelegate::QStyledItemDelegate;
+  void paint(QPainter* painter, const QStyleOptionViewItem& option,
+             const QModelIndex& index) const override {
+    QStyledItemDelegate::paint(painter, option, index);
+    painter->setPen(theme::soft_text);
+    painter->drawText(option.rect.adjusted(0, 0, -10, 0), Qt::AlignRight | Qt::AlignVCenter,
+                      index.data(keys_role).toString());
+  }
+};
 
 }  // namespace
 
@@ -34,6 +53,7 @@ Palette::Palette(QWidget* parent) : QFrame(parent, Qt::Popup) {
   list_->setObjectName("palette_list");
   list_->setFocusPolicy(Qt::NoFocus);
   list_->setIconSize(QSize(20, 20));
+  list_->setItemDelegate(new KeysBeside(list_));
   layout->addWidget(text_);
   layout->addWidget(list_);
   text_->installEventFilter(this);
@@ -63,12 +83,11 @@ void Palette::narrow() {
     if (!action.isEnabled()) continue;
     // The tip often has the word that the title lacks.
     if (!has_all(title_of(action) + ' ' + action.toolTip(), words)) continue;
-    const QString keys = action.shortcut().toString(QKeySequence::NativeText);
-    auto* item =
-        new QListWidgetItem(action.icon().isNull() ? QIcon(blank) : action.icon(),
-                            keys.isEmpty() ? title_of(action) : title_of(action) + "     " + keys);
+    auto* item = new QListWidgetItem(action.icon().isNull() ? QIcon(blank) : action.icon(),
+                                     title_of(action));
+    item->setData(keys_role, action.shortcut().toString(QKeySequence::NativeText));
     item->setToolTip(action.toolTip());
-    item->setData(Qt::UserRole, static_cast<int>(k));
+    item->setData(action_role, static_cast<int>(k));
     // What says it in its title comes before what only explains it so.
     if (has_all(title_of(action), words) || list_->count() == 0)
       list_->addItem(item);
@@ -81,7 +100,7 @@ void Palette::narrow() {
 void Palette::run() {
   const QListWidgetItem* item = list_->currentItem();
   if (!item) return;
-  QAction* action = actions_[static_cast<std::size_t>(item->data(Qt::UserRole).toInt())];
+  QAction* action = actions_[static_cast<std::size_t>(item->data(action_role).toInt())];
   hide();
   action->trigger();
 }

@@ -1,6 +1,7 @@
 #include "ui/panels/preferences.h"
 
 #include <QComboBox>
+#include <QDialogButtonBox>
 #include <QSettings>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -52,6 +53,10 @@ Preferences::Preferences(QWidget* parent) : QDialog(parent) {
   threads->setValue(QSettings().value("threads", 0).toInt());
   form->add(tr("Threads"), threads);
   layout->addLayout(form);
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
+  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+  layout->addSpacing(8);
+  layout->addWidget(buttons);
   setMinimumWidth(360);
   connect(theme, &QComboBox::currentIndexChanged, this, [this](int index) {
     QSettings().setValue("dark", index == 1);

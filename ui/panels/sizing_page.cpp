@@ -89,7 +89,7 @@ void SizingPage::make_asked(Form* form) {
   gradation_ =
       number_box(1.01, 10, 0.1, "gradation", tr("How fast sizes grow outside, per unit length"));
   form->add(tr("Growth outside"), gradation_);
-  directions_ = new QCheckBox(tr("keep the directions"));
+  directions_ = new QCheckBox(tr("keep directions"));
   directions_->setObjectName("keep_directions");
   directions_->setToolTip(
       tr("Scales the stretched elements of the walls instead of making them\n"

@@ -17,12 +17,13 @@ namespace lamella::ui {
 Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   setObjectName("welcome");
   auto* outer = new QVBoxLayout(this);
-  outer->setContentsMargins(40, 40, 40, 40);
+  outer->setContentsMargins(16, 12, 16, 12);
   outer->addStretch(2);
 
   drop_zone_ = new QFrame;
   drop_zone_->setObjectName("drop_zone");
-  drop_zone_->setFixedSize(700, 260);
+  drop_zone_->setFixedWidth(590);
+  drop_zone_->setMinimumHeight(200);
   auto* zone = new QVBoxLayout(drop_zone_);
   zone->setSpacing(8);
   zone->addStretch(1);
@@ -48,7 +49,7 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   zone->addWidget(open, 0, Qt::AlignCenter);
   zone->addStretch(1);
   outer->addWidget(drop_zone_, 0, Qt::AlignCenter);
-  outer->addSpacing(26);
+  outer->addSpacing(18);
 
   auto* or_label = new QLabel(tr("or start with a sample part"));
   or_label->setObjectName("soft");
@@ -56,7 +57,7 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   outer->addWidget(or_label);
   outer->addSpacing(10);
   auto* samples = new QHBoxLayout;
-  samples->setSpacing(12);
+  samples->setSpacing(10);
   samples->addStretch(1);
   const std::tuple<const char*, QString, QString> parts[] = {
       {"ribbed_tray", tr("Ribbed tray"), tr("Ribs, bosses and fillets")},
@@ -72,7 +73,7 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
     card->setIcon(QIcon(QString(":/icons/sample-%1.svg").arg(name)));
     card->setIconSize(QSize(96, 64));
     card->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
-    card->setFixedSize(130, 116);
+    card->setFixedSize(110, 108);
     card->setCursor(Qt::PointingHandCursor);
     connect(card, &QToolButton::clicked, this,
             [this, name = QString(name)] { Q_EMIT sample_chosen(name); });

@@ -3,20 +3,42 @@
 #include <algorithm>
 #include <set>
 
+#include "core/geometry/diagnosis.h"
+#include "core/geometry/triangles.h"
+
 namespace lamella::ui {
+namespace {
+
+/// mm of the unit that parts of this size, read in mm, are likely in.
+double unit_of_size(const std::vector<Part>& parts) {
+  std::vector<Vec<3>> points;
+  for (const Part& part : parts)
+    points.insert(points.end(), part.surface.points.begin(), part.surface.points.end());
+  if (points.empty()) return 1;
+  const std::string guess = guess_unit(diagonal_of(points));
+  return guess == "inch" ? 25.4 : guess == "m" ? 1000 : 1;
+}
+
+}  // namespace
 
 Result<ReadParts> read_parts(const Services& services,
                              const std::vector<std::filesystem::path>& files,
-                             const std::vector<double>& units, const LoadParams& params,
+                             std::vector<double>& units, const LoadParams& params,
                              const Progress& progress) {
   ReadParts read;
   const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, files.size()));
   for (std::size_t k = 0; k < files.size(); ++k) {
     const auto at = static_cast<double>(k);
     LoadParams own = params;
-    own.unit = units[k];
-    auto loaded =
-        services.load_parts(files[k], own, progress.portion(share * at, share * (at + 1)));
+    const auto load = [&](double unit) {
+      own.unit = unit;
+      return services.load_parts(files[k], own, progress.portion(share * at, share * (at + 1)));
+    };
+    auto loaded = load(units[k] > 0 ? units[k] : 1);
+    if (loaded && units[k] == 0) {
+      units[k] = unit_of_size(*loaded);
+      if (units[k] != 1) loaded = load(units[k]);
+    }
     if (!loaded) return loaded.error();
     for (std::size_t p = 0; p < loaded->size(); ++p) {
       read.parts.push_back(std::move((*loaded)[p]));

@@ -21,10 +21,11 @@ struct ReadParts {
 };
 
 /// The bodies of the files, in order, under the names that their files give them. `units`: one a
-/// file, mm. Errors: those of Services::load_parts.
+/// file, mm; 0, of a file without unit, becomes the likely one of its size. Errors: those of
+/// Services::load_parts.
 Result<ReadParts> read_parts(const Services& services,
                              const std::vector<std::filesystem::path>& files,
-                             const std::vector<double>& units, const LoadParams& params,
+                             std::vector<double>& units, const LoadParams& params,
                              const Progress& progress);
 
 /// Gives the parts from number `first` on names that neither the parts before nor `left_out` have,

@@ -192,21 +192,29 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
   params.chord_tolerance = study_->options.chord_tolerance;
   params.angle_tolerance = study_->options.angle_tolerance;
   if (add && !parts_->empty()) params = read_with_;
+  // What is added is in the unit of the STL that is there.
+  if (add && unit == 0 && !parts_->empty()) {
+    unit = 1;
+    for (const PartSource& source : sources_)
+      if (is_stl(source.file)) unit = source.unit;
+  }
   begin(Activity::loading,
         [this, files, add, params, unit](const Progress& progress) -> Worker::Done {
           std::vector<StudyInput> inputs;
           std::vector<double> units;
           QString no_unit;
           for (const auto& file : files) {
-            if (is_stl(file)) no_unit = text(file.string());
-            units.push_back(is_stl(file) ? unit : 1);
-            inputs.push_back({file.string(), units.back()});
+            const bool guess = is_stl(file) && unit == 0;
+            if (guess) no_unit = text(file.string());
+            units.push_back(guess ? 0 : is_stl(file) ? unit : 1);
           }
           Result<ReadParts> read = read_parts(services_, files, units, params, progress);
+          for (std::size_t k = 0; k < files.size(); ++k)
+            inputs.push_back({files[k].string(), units[k]});
           for (std::size_t k = 0; read && k < files.size(); ++k)
             if (const Result<void> known = identify(inputs[k], files[k]); !known)
               read = known.error();
-          return [this, read = std::move(read), inputs, add, no_unit, params, unit]() mutable {
+          return [this, read = std::move(read), inputs, add, no_unit, params]() mutable {
             set_activity(Activity::idle);
             if (!read) return report(read.error());
             const QString size =
@@ -214,8 +222,8 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
             if (!add) read_with_ = params;
             take_parts(std::move(*read), inputs, add);
             // Read again it takes the place of the study: only where it is all there is.
-            if (!no_unit.isEmpty() && unit == 1 && !add && inputs.size() == 1)
-              Q_EMIT unit_assumed(no_unit, size);
+            if (!no_unit.isEmpty() && !add && inputs.size() == 1)
+              Q_EMIT unit_guessed(no_unit, size, inputs.front().unit);
           };
         });
 }
@@ -423,7 +431,7 @@ void Session::replace_all(Study study, ReadParts read, std::size_t first_new) {
   arrange_bodies(study, read.parts);
   for (std::size_t k = first_new; k < read.parts.size(); ++k) {
     const Part& part = read.parts[k];
-    Q_EMIT logged(tr("%1: %2, %3 triangles on %4 faces, volume %5")
+    Q_EMIT logged(tr("%1: %2, %L3 triangles on %4 faces, volume %5")
                       .arg(text(part.name), box_size(part.surface))
                       .arg(part.surface.facets.size())
                       .arg(part.surface.faces.size())

@@ -115,8 +115,9 @@ class Session : public QObject {
   /// Chord tolerance a body gets when the study has none, mm; its smallest size likewise.
   double automatic_size(int body) const;
 
-  /// Reads a part file and replaces the study, or adds to it. `unit`: mm per unit of an STL.
-  void open(const std::vector<std::filesystem::path>& files, bool add = false, double unit = 1);
+  /// Reads a part file and replaces the study, or adds to it. `unit`: mm per unit of an STL;
+  /// 0: guessed by its size.
+  void open(const std::vector<std::filesystem::path>& files, bool add = false, double unit = 0);
   /// Opens a sample part made by code.
   void open_sample(const std::string& name);
   /// Reads a volume mesh just to look at it.
@@ -209,8 +210,8 @@ class Session : public QObject {
   void failed(const QString& message, const QString& hint);
   /// Something worth knowing, no failure; `notes` one a line.
   void noticed(const QString& what, const QString& notes);
-  /// An STL was read without a unit; its size may need another one.
-  void unit_assumed(const QString& file, const QString& size);
+  /// The unit of an STL, in mm, was guessed by its size; it may be another one.
+  void unit_guessed(const QString& file, const QString& size, double unit);
   void logged(const QString& line);
 
  private:

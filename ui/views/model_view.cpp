@@ -611,9 +611,9 @@ void ModelView::apply_sections() {
 void ModelView::refresh_theme() {
   if (!view_) return;
   view_->refresh_theme();
+  each_scene([this](Scene& s) { s.set_features(actions_[Act::features]->isChecked()); });
   if (compare_) compare_->refresh_theme();
-  view_->update();
-  overlay_->update();
+  refresh();
 }
 
 void ModelView::set_quality_range(const std::optional<std::pair<double, double>>& range) {

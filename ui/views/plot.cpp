@@ -100,7 +100,18 @@ void Plot::update_range() {
   high_ = high > low_ ? low_ + (high - low_) * 1.14 : low_ + 1;
 }
 
-QRectF Plot::area() const { return QRectF(rect()).adjusted(50, 30, -14, -24); }
+QRectF Plot::area() const {
+  return QRectF(rect()).adjusted(50, legend_below() ? 46 : 30, -14, -24);
+}
+
+bool Plot::legend_below() const {
+  if (series_.size() < 2 || count() == 0) return false;
+  QFont bold = font();
+  bold.setWeight(QFont::DemiBold);
+  double needed = 12 + QFontMetricsF(bold).horizontalAdvance(title_);
+  for (const Series& s : series_) needed += QFontMetricsF(font()).horizontalAdvance(s.name) + 30;
+  return needed > width() - 14;
+}
 
 double Plot::x_of(int index) const {
   const QRectF a = area();
@@ -154,16 +165,19 @@ void Plot::paintEvent(QPaintEvent*) {
   bold.setWeight(QFont::DemiBold);
   painter.setFont(small);
   double right = a.right();
+  const double lower = legend_below() ? 20 : 0;
   if (series_.size() > 1 && count() > 0) {
     for (auto s = series_.rbegin(); s != series_.rend(); ++s) {
       const double w = painter.fontMetrics().horizontalAdvance(s->name);
       painter.setPen(theme::soft_text);
-      painter.drawText(QRectF(right - w, 4, w + 2, 20), Qt::AlignLeft | Qt::AlignVCenter, s->name);
+      painter.drawText(QRectF(right - w, 4 + lower, w + 2, 20), Qt::AlignLeft | Qt::AlignVCenter,
+                       s->name);
       painter.setPen(QPen(s->color, 2.5, Qt::SolidLine, Qt::RoundCap));
-      painter.drawLine(QPointF(right - w - 18, 14), QPointF(right - w - 6, 14));
+      painter.drawLine(QPointF(right - w - 18, 14 + lower), QPointF(right - w - 6, 14 + lower));
       right -= w + 30;
     }
   }
+  if (lower > 0) right = a.right();
   painter.setFont(bold);
   painter.setPen(theme::text);
   painter.drawText(

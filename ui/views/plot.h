@@ -23,6 +23,8 @@ class Plot : public QWidget {
 
   void set_title(const QString& title);
   void set_series(std::vector<Series> series);
+  /// Of values of the longest series.
+  int count() const;
   /// A dashed horizontal line called `name`, as the value asked for.
   void set_target(std::optional<double> value, const QString& name = {});
   /// Iteration marked by a vertical line; -1: none.
@@ -30,7 +32,7 @@ class Plot : public QWidget {
   void set_logarithmic(bool on);
   /// Decimals of the values shown on hover.
   void set_decimals(int decimals) { decimals_ = decimals; }
-  QSize minimumSizeHint() const override { return {165, 130}; }
+  QSize minimumSizeHint() const override { return {125, 130}; }
 
  Q_SIGNALS:
   void hovered(int index);
@@ -48,7 +50,8 @@ class Plot : public QWidget {
 
  private:
   QRectF area() const;
-  int count() const;
+  /// Whether the names of the series need a line below the title.
+  bool legend_below() const;
   double x_of(int index) const;
   double y_of(double value) const;
   int index_at(double x) const;

@@ -159,12 +159,15 @@ struct Scene::Impl {
         set_color(*line, theme::accent);
       } else {
         line->SetColor(0.10, 0.15, 0.21);
+        if (theme::dark) line->SetColor(0, 0, 0);
       }
-      line->SetLineWidth(outlined ? 3.2F : 1.6F);
+      // Against the dark of the view thin lines are lost.
+      line->SetLineWidth(outlined ? 3.2F : theme::dark ? 2.4F : 1.6F);
       parts[k].surface->GetProperty()->SetEdgeVisibility(false);
     }
     show_mesh();
     mesh_lines->SetVisibility(state != nullptr && parts.empty() && features);
+    mesh_lines->GetProperty()->SetLineWidth(theme::dark ? 2.4F : 1.6F);
     for (const Cut& cut : cuts) {
       cut.actor->SetVisibility(state != nullptr && !crinkle);
       cut.actor->GetProperty()->SetEdgeVisibility(edges);

@@ -53,10 +53,10 @@ std::pair<double, double> range_along(const std::array<double, 6>& box, const Ve
 ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(actions) {
   setObjectName("view_bar");
   auto* rows = new QVBoxLayout(this);
-  rows->setContentsMargins(10, 5, 10, 5);
+  rows->setContentsMargins(8, 5, 8, 5);
   rows->setSpacing(4);
   auto* row = new QHBoxLayout;
-  row->setSpacing(6);
+  row->setSpacing(4);
   rows->addLayout(row);
   auto* by = new QLabel(tr("Color by"));
   by->setObjectName("soft");
@@ -76,7 +76,7 @@ ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(a
   colors_->addItem(tr("Shear rate"), int(ColorBy::shear));
   colors_->addItem(tr("Flow indicator"), int(ColorBy::indicator));
   colors_->addItem(tr("Solver's field"), int(ColorBy::field));
-  colors_->setMinimumWidth(140);
+  colors_->setMinimumWidth(130);
   row->addWidget(colors_);
   bodies_ = new QComboBox;
   bodies_->setObjectName("filling_body");

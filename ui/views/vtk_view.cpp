@@ -124,8 +124,8 @@ VtkView::VtkView(QWidget* parent) : QOpenGLWidget(parent), vtk_(std::make_unique
 void VtkView::refresh_theme() {
   // VTK's gradient runs upward: the lighter color belongs to the top.
   if (theme::dark) {
-    vtk_->renderer->SetBackground(0.17, 0.20, 0.23);
-    vtk_->renderer->SetBackground2(0.30, 0.34, 0.38);
+    vtk_->renderer->SetBackground(0.24, 0.28, 0.32);
+    vtk_->renderer->SetBackground2(0.40, 0.44, 0.48);
   } else {
     vtk_->renderer->SetBackground(0.86, 0.892, 0.925);
     vtk_->renderer->SetBackground2(0.985, 0.988, 0.992);
