@@ -146,6 +146,9 @@ class Adaption {
     return run(BlockPartition<D>(work_, patch, blocks), sweep, sweeps, progress, 1);
   }
 
+  /// Of the elements, those that `mend` has found poor.
+  double poor_share() const { return poor_share_; }
+
   /// Each of the blocks, or of the first `active` ones, as many times, or until nothing is left to
   /// do. Returns the number of operations of the last sweeps.
   std::size_t run(const BlockPartition<D>& partition, const SweepParams& sweep, int sweeps,
@@ -239,7 +242,7 @@ class Adaption {
 
  private:
   /// [element] 1 for those that touch a neighbor of a node of an element below the quality.
-  std::vector<std::int32_t> around_poor(double quality, bool strict) const {
+  std::vector<std::int32_t> around_poor(double quality, bool strict) {
     RatingKernel<D> kernel;
     kernel.element_mean = params_.element_mean;
     kernel.size_average = params_.size_average;
@@ -268,8 +271,13 @@ class Adaption {
       for (NodeId n : work_.elements[e])
         if (n != 0 && ring[n] == 0) ring[n] = with;
     };
+    std::size_t poor = 0;
     for (std::size_t e = 0; e < in.size(); ++e)
-      if (ratings[e].quality < quality) mark(e, 1);
+      if (ratings[e].quality < quality) {
+        mark(e, 1);
+        ++poor;
+      }
+    poor_share_ = static_cast<double>(poor) / static_cast<double>(in.size());
     for (std::int32_t r = 1; r <= 2; ++r)
       for (std::size_t e = 0; e < in.size(); ++e) {
         const auto& nodes = work_.elements[e];
@@ -289,6 +297,7 @@ class Adaption {
   WorkMesh<D> work_;
   AdaptReport report_;
   std::size_t sorted_at_ = 0;
+  double poor_share_ = 0;
   double most_elements_ = std::numeric_limits<double>::infinity();
   std::atomic<bool> overfull_ = false;
 };
@@ -384,7 +393,7 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
   if (params.memory_limit)
     adaption.set_most_elements(*params.memory_limit * 1e6 / bytes_an_element<D>);
 
-  const bool coarse = report.forecast_nodes > 4 * static_cast<double>(adaption.node_count());
+  const bool coarse = report.forecast_nodes > 50 * static_cast<double>(adaption.node_count());
   const std::vector<Stage> all = stages<D>(params, coarse);
   int rounds = 0;
   for (const Stage& stage : all) rounds += stage.rounds;
@@ -404,6 +413,8 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
           report.settled = *mended == 0;
           break;
         }
+        // Sizes that vary so much from node to node tell little of a single element.
+        if (stage.sweep.strict && adaption.poor_share() > 0.01) break;
       }
       std::size_t done =
           adaption.round(stage.sweep, progress.portion(begin, begin + 1.0 / rounds, "adapting"));
