@@ -29,7 +29,7 @@ struct Stage {
 /// a little energy at random, which lets defects of the mesh wander and meet (simulated annealing);
 /// then the worst elements; in 2D at last the nodes' places.
 template <int D>
-std::vector<Stage> stages(const AdaptParams& params, bool coarse) {
+std::vector<Stage> stages(const AdaptParams& params, bool coarse, bool function) {
   std::vector<Stage> all;
   Stage sizes;
   sizes.sweep.relaxation = params.relaxation;
@@ -65,7 +65,8 @@ std::vector<Stage> stages(const AdaptParams& params, bool coarse) {
   worst.rounds = 8;
   worst.settled = 1e-4;
   all.push_back(worst);
-  if constexpr (D == 3) {
+  // A metric that is only carried from node to node says too little of a single one.
+  if (D == 3 && function) {
     worst.sweep.strict = true;
     all.push_back(worst);
   }
@@ -394,7 +395,7 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
     adaption.set_most_elements(*params.memory_limit * 1e6 / bytes_an_element<D>);
 
   const bool coarse = report.forecast_nodes > 50 * static_cast<double>(adaption.node_count());
-  const std::vector<Stage> all = stages<D>(params, coarse);
+  const std::vector<Stage> all = stages<D>(params, coarse, static_cast<bool>(metric_at));
   int rounds = 0;
   for (const Stage& stage : all) rounds += stage.rounds;
   int past = 0;
