@@ -394,7 +394,9 @@ Result<Adapted<D>> adapt(const SimplexMesh<D>& mesh, const MetricField<D>& metri
   if (params.memory_limit)
     adaption.set_most_elements(*params.memory_limit * 1e6 / bytes_an_element<D>);
 
-  const bool coarse = report.forecast_nodes > 50 * static_cast<double>(adaption.node_count());
+  // A small mesh costs little either way.
+  const bool coarse = report.forecast_nodes > 50 * static_cast<double>(adaption.node_count()) &&
+                      report.forecast_nodes > 2e4;
   const std::vector<Stage> all = stages<D>(params, coarse, static_cast<bool>(metric_at));
   int rounds = 0;
   for (const Stage& stage : all) rounds += stage.rounds;
