@@ -65,8 +65,10 @@ std::vector<Stage> stages(const AdaptParams& params, bool coarse, bool function)
   worst.rounds = 8;
   worst.settled = 1e-4;
   all.push_back(worst);
-  // A metric that is only carried from node to node says too little of a single one.
-  if (D == 3 && function) {
+  // A metric that is only carried from node to node says too little of a single one, and a ruler of
+  // metrics nothing of other averages.
+  if (D == 3 && function && params.element_mean == MetricMean::m &&
+      params.size_average == SizeAverage::l2) {
     worst.sweep.strict = true;
     all.push_back(worst);
   }

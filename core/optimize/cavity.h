@@ -107,14 +107,15 @@ inline constexpr double usual_size_weight = D == 2   ? 1.8
 template <int D>
 struct RatingKernel {
   static constexpr double mean = 1.0 / (D + 1);
+  /// Of the shape in the densest metric: a mean ratio of .3 in it counts as much as c(T) of .45.
   static constexpr double strictness = 2.8;
   double relaxation = 1;  ///< of the shape
   double size_weight = usual_size_weight<D>;
   MetricMean element_mean = MetricMean::m;
   SizeAverage size_average = SizeAverage::l2;
   const std::vector<Vec<D>>* points = nullptr;
-  /// [node] where the quality is bounded by `strictness` times the shape in the densest metric of
-  /// the nodes as well.
+  /// [node] what elements average, M itself; where set, the quality is bounded by `strictness`
+  /// times the shape in the densest metric of the nodes as well.
   const std::vector<Packed<D>>* metrics = nullptr;
 
   /// (3.2) and (3.4), the fast case.

@@ -67,7 +67,6 @@ StarOptimizer<D>::StarOptimizer(Block<D> block, const BoundaryModel<D>& model,
 template <int D>
 void StarOptimizer<D>::set_weights(double relaxation, double size_weight, bool strict) {
   if (size_weight == 0) size_weight = usual_size_weight<D>;
-  strict = strict && plain_ && kernel_.size_average == SizeAverage::l2;
   if (kernel_.relaxation == relaxation && kernel_.size_weight == size_weight &&
       strict == (kernel_.metrics != nullptr))
     return;

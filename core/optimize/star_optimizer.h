@@ -28,8 +28,8 @@ struct SweepParams {
   double temperature = 0;        ///< energy that a reconnection may cost, at random
   std::size_t most_elements = std::numeric_limits<std::size_t>::max();  ///< of a block
   bool moves_only = false;  ///< nodes move, nothing is reconnected
-  bool strict = false;      ///< quality is taken in the densest metric of the nodes as well
-  double attention = 2;     ///< c(T) above which nodes are left alone altogether
+  bool strict = false;  ///< quality is taken in the densest metric of the nodes as well; M, L2 only
+  double attention = 2;  ///< c(T) above which nodes are left alone altogether
 };
 
 /// The working state of algorithm 3.1 on one block of the mesh: cuts the cavity around a node or an

@@ -93,6 +93,7 @@ void StarOptimizer<D>::offer_moves(NodeId s, const BoundarySite& site) {
   }
   if (weight > 0) offer_at(center / weight);
   if (!sweep_.strict) return;
+  // The energy, of the mean metric, does not know where the densest one wants the node.
   for (const double part : {0.3, 0.1}) {
     if (site.on_feature) {
       for (int k = 0; k < 2; ++k) offer_at(old + part * (topo_.points[site.ends[k]] - old));

@@ -69,6 +69,47 @@ TYPED_TEST(StarOptimizers, TheKernelRatesAsTheDefinitionsDo) {
   }
 }
 
+TYPED_TEST(StarOptimizers, TheDensestMetricBoundsTheQualityWhereItIsAsked) {
+  constexpr int D = TypeParam::value;
+  std::mt19937 rng(65 + D);
+  RatingKernel<D> plain, strict;
+  int bounded = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<Vec<D>> points{Vec<D>::Zero()};
+    MetricField<D> metric{Metric<D>::Identity()};
+    std::vector<Packed<D>> packed{Packed<D>::zero()};
+    std::array<NodeId, D + 1> nodes;
+    Corners<D> p;
+    int densest = 1;
+    for (int k = 0; k <= D; ++k) {
+      points.push_back(random_vector<D>(rng));
+      metric.push_back(random_metric<D>(rng, 100) * std::pow(4.0, trial % (D + 1) == k));
+      packed.push_back(Packed<D>::from(metric.back()));
+      p[k] = points[nodes[k] = k + 1];
+      if (metric.back().determinant() > metric[densest].determinant()) densest = k + 1;
+    }
+    // Of unit size, so that shapes decide.
+    const Mat<D> average = mean_metric<D>(metric, nodes);
+    double size2 = 0;
+    for (int i = 0; i <= D; ++i)
+      for (int j = 0; j < i; ++j) size2 += (p[i] - p[j]).dot(average * (p[i] - p[j]));
+    size2 *= 2.0 / (D * (D + 1));
+    for (int k = 0; k <= D; ++k) p[k] = points[k + 1] /= std::sqrt(size2);
+    int dense = 0;
+    for (int k = 1; k <= D + 1; ++k)
+      dense += metric[k].determinant() > 0.8 * metric[densest].determinant();
+    const auto own = element_quality<D>(p, metric[densest]);
+    if (own.shape <= 0 || dense > 1) continue;
+    strict.metrics = &packed;
+    const double mean = rate<D>(plain, points, packed, nodes).quality;
+    const double bound = RatingKernel<D>::strictness * own.shape;
+    const double expected = std::min(mean, bound);
+    EXPECT_NEAR(rate<D>(strict, points, packed, nodes).quality, expected, 1e-9 * expected);
+    bounded += bound < mean;
+  }
+  EXPECT_GT(bounded, 3);
+}
+
 TYPED_TEST(StarOptimizers, TheUnitEquilateralElementIsTheBest) {
   constexpr int D = TypeParam::value;
   std::mt19937 rng(70 + D);
