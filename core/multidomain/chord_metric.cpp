@@ -103,6 +103,11 @@ void ChordField::Level::add(const std::array<Vec<3>, 3>& facet, const Curved& as
   curved.push_back(asked);
 }
 
+void ChordField::Levels::add(const std::array<Vec<3>, 3>& facet, Curved asked) {
+  for (double& size : asked.size) size = std::max(size, smallest);
+  (*this)[std::ilogb(asked.size[0])].add(facet, asked);
+}
+
 void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
                              double tolerance, double largest, int threads,
                              const Progress& progress, Levels& levels) {
@@ -174,24 +179,26 @@ void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition
     if (asked.size[0] < largest) found[i] = asked;
   });
   for (std::size_t i = 0; i < pieces.size(); ++i)
-    if (found[i]) levels[std::ilogb(found[i]->size[0])].add(pieces[i].facet, *found[i]);
+    if (found[i]) levels.add(pieces[i].facet, *found[i]);
 }
 
 ChordField::ChordField(const Partition<3>& partition,
-                       const std::vector<ReferenceSurface<3>>& surfaces, double tolerance,
-                       double growth, int threads, const Progress& progress)
-    : growth_(growth) {
+                       const std::vector<ReferenceSurface<3>>& surfaces, const ChordParams& params,
+                       const Progress& progress)
+    : growth_(params.growth) {
+  const double tolerance = params.tolerance;
   Box<3> all;
   for (const auto& s : surfaces)
     for (const Vec<3>& p : s.points) all.add(p);
   const double largest = (all.hi - all.lo).norm();
   Levels levels;
+  levels.smallest = params.smallest;
   for (std::size_t z = 0; z < surfaces.size(); ++z) {
     const ReferenceSurface<3>& s = surfaces[z];
     std::vector<std::optional<Curved>> found(s.facets.size());
     const auto count = static_cast<double>(surfaces.size()), at = static_cast<double>(z);
     const Progress own = progress.portion(at / count, (at + 1) / count);
-    parallel_each(found.size(), threads, own.portion(0, 0.5), [&](std::size_t f) {
+    parallel_each(found.size(), params.threads, own.portion(0, 0.5), [&](std::size_t f) {
       const Vec<3>&a = s.points[s.facets[f][0]], &b = s.points[s.facets[f][1]],
             &c = s.points[s.facets[f][2]];
       const Vec<3> center = (a + b + c) / 3, normal = (b - a).cross(c - a);
@@ -204,12 +211,11 @@ ChordField::ChordField(const Partition<3>& partition,
     });
     for (std::size_t f = 0; f < found.size(); ++f) {
       if (!found[f] || !(found[f]->size[0] < flat_share * largest)) continue;
-      levels[std::ilogb(found[f]->size[0])].add(
-          {s.points[s.facets[f][0]], s.points[s.facets[f][1]], s.points[s.facets[f][2]]},
-          *found[f]);
+      levels.add({s.points[s.facets[f][0]], s.points[s.facets[f][1]], s.points[s.facets[f][2]]},
+                 *found[f]);
     }
-    add_details(s, partition, tolerance, detail_share * largest, threads, own.portion(0.5, 1),
-                levels);
+    add_details(s, partition, tolerance, detail_share * largest, params.threads,
+                own.portion(0.5, 1), levels);
   }
   for (auto& [power, level] : levels) {
     level.surface.faces.resize(1);
@@ -217,6 +223,11 @@ ChordField::ChordField(const Partition<3>& partition,
     level.surface = {};
     levels_.push_back(std::move(level));
   }
+}
+
+ChordField ChordField::of_body(const ReferenceSurface<3>& surface, const ChordParams& params,
+                               const Progress& progress) {
+  return ChordField(Partition<3>({{"", surface_zone(surface)}}), {surface}, params, progress);
 }
 
 Metric<3> ChordField::at(const Metric<3>& metric, const Vec<3>& x) const {

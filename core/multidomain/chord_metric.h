@@ -12,18 +12,28 @@
 
 namespace lamella {
 
+struct ChordParams {
+  double tolerance = 0;  ///< mm
+  double growth = 0.5;   ///< of sizes along the border, a share of the distance from it
+  double smallest = 0;   ///< mm, no size along the border is below
+  int threads = 0;       ///< 0: all cores
+};
+
 /// A metric with sizes along all that is curved in the surfaces of the zones small enough for edges
-/// to be chords of it within `tolerance` mm, wherever the nearest border is: a fillet makes sizes
-/// small around it too. Away from the border they grow by the share `growth` of the distance; the
-/// size across is small enough for them to grow to no more than 2.5 times within it. Sharp edges do
-/// not count as curved, but details do, whose edges the mesh has to follow: along a feature edge
-/// from corner to corner sizes are at most its length, and between edges that have no corner in
-/// common at most their distance. Zones without a surface ask for nothing. Immutable and
-/// thread-safe. Of one that was cancelled while it was made parts are missing.
+/// to be chords of it within the tolerance, wherever the nearest border is: a fillet makes sizes
+/// small around it too. Away from the border they grow; the size across is small enough for them to
+/// grow to no more than 2.5 times within it. Sharp edges do not count as curved, but details do,
+/// whose edges the mesh has to follow: along a feature edge from corner to corner sizes are at most
+/// its length, and between edges that have no corner in common at most their distance. Zones
+/// without a surface ask for nothing. Immutable and thread-safe. Of one that was cancelled while it
+/// was made parts are missing.
 class ChordField {
  public:
   ChordField(const Partition<3>& partition, const std::vector<ReferenceSurface<3>>& surfaces,
-             double tolerance, double growth = 0.5, int threads = 0, const Progress& progress = {});
+             const ChordParams& params, const Progress& progress = {});
+  /// Of the surface of a single body.
+  static ChordField of_body(const ReferenceSurface<3>& surface, const ChordParams& params,
+                            const Progress& progress = {});
   Metric<3> at(const Metric<3>& metric, const Vec<3>& x) const;
 
   /// Sizes along a border at a point of it, the smaller first.
@@ -44,7 +54,10 @@ class ChordField {
     void add(const std::array<Vec<3>, 3>& facet, const Curved& asked);
   };
   /// By the power of two of the smallest size.
-  using Levels = std::map<int, Level>;
+  struct Levels : std::map<int, Level> {
+    double smallest = 0;  ///< mm
+    void add(const std::array<Vec<3>, 3>& facet, Curved asked);
+  };
   static void add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
                           double tolerance, double largest, int threads, const Progress& progress,
                           Levels& levels);

@@ -383,9 +383,10 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   cut_params.chord_error = params.chord_error;
   cut_params.threads = adapt_params.threads;
   const double tolerance = cut_params.tolerance;
-  const auto field =
-      std::make_shared<const ChordField>(partition, surfaces, chord_share * tolerance, chord_growth,
-                                         adapt_params.threads, progress.portion(0, 0.02));
+  const auto field = std::make_shared<const ChordField>(
+      partition, surfaces,
+      ChordParams{chord_share * tolerance, chord_growth, 0, adapt_params.threads},
+      progress.portion(0, 0.02));
   if (progress.cancelled()) return cancelled_error();
   MetricFunction<3> chords_at;
   if (metric_at) chords_at = [&](const Vec<3>& x) { return field->at(metric_at(x), x); };

@@ -269,13 +269,23 @@ bool StarOptimizer<D>::beats(NodeId node, const Vec<D>& point, const Packed<D>& 
   return goes_before(trial_, best_);
 }
 
-/// Makes the apex that beat the best known the best, unless the boundary forbids.
+/// Whether the metric of the node was asked for so near the apex that it need not be again.
 template <int D>
-void StarOptimizer<D>::take_if_allowed(const Apex& apex, const BoundarySite& site) {
-  if (site.boundary) {
-    if (!topology_allows(apex, site) || !boundary_allows(apex, site)) return;
-    best_retag_ = retag_;
+bool StarOptimizer<D>::still_known(NodeId n, const Apex& apex) const {
+  return n != 0 && apex.metric.quad(apex.point - asked_[n]) < still_near;
+}
+
+/// Makes the apex that beat the best known the best, unless the boundary forbids, or the metric
+/// there where single elements count.
+template <int D>
+void StarOptimizer<D>::take_if_allowed(Apex apex, const BoundarySite& site) {
+  if (site.boundary && (!topology_allows(apex, site) || !boundary_allows(apex, site))) return;
+  if (apex.node == 0 && metric_function_ && sweep_.attention < 1 && !still_known(moves_, apex)) {
+    apex = new_point(apex.point, Packed<D>::from(metric_function_(apex.point)));
+    apex.asked = true;
+    if (!beats(0, apex.point, apex.averaged)) return;
   }
+  if (site.boundary) best_retag_ = retag_;
   std::swap(best_, trial_);
   best_worst_ = trial_worst_;
   best_cost_ = trial_cost_;
@@ -328,7 +338,7 @@ Packed<D> StarOptimizer<D>::metric_in_star(NodeId s, const Vec<D>& x) {
 template <int D>
 typename StarOptimizer<D>::Apex StarOptimizer<D>::new_point(const Vec<D>& x,
                                                             const Packed<D>& metric) const {
-  return {0, x, metric, plain_ ? metric : averager_.carry(metric)};
+  return {0, x, metric, plain_ ? metric : averager_.carry(metric), false};
 }
 
 template <int D>
@@ -336,6 +346,7 @@ bool StarOptimizer<D>::process_node(NodeId s) {
   open_cavity(topo_.around.of(s), s, s);
   BoundarySite site;
   if (!node_site(s, site)) return false;
+  moves_ = s;
   start_from_current();
 
   const double near4 = fourth_power(sweep_.collapse_below);
@@ -366,6 +377,7 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n, bool is_long) {
   open_cavity(star_, s, n);
   BoundarySite site;
   if (!edge_site(s, n, site)) return false;
+  moves_ = 0;
   start_from_current();
   if (!site.boundary) {
     for (NodeId v : link_) offer(v, site);
@@ -456,12 +468,9 @@ void StarOptimizer<D>::replace_cavity(const Apex& offered, NodeId moved) {
       shared_[v] = 0;
       done_[v] = 0;
     }
-    if (metric_function_) {
-      const bool near = moved != 0 && apex.metric.quad(apex.point - asked_[v]) < still_near;
-      if (!near) {
-        apex = new_point(apex.point, Packed<D>::from(metric_function_(apex.point)));
-        asked_[v] = apex.point;
-      }
+    if (metric_function_ && (apex.asked || !still_known(moved, apex))) {
+      if (!apex.asked) apex = new_point(apex.point, Packed<D>::from(metric_function_(apex.point)));
+      asked_[v] = apex.point;
     }
     far = apex.metric.quad(apex.point - topo_.points[v]) > far_move2;
     topo_.points[v] = apex.point;

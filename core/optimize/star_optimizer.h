@@ -62,6 +62,7 @@ class StarOptimizer {
     Vec<D> point = Vec<D>::Zero();
     Packed<D> metric = Packed<D>::zero();
     Packed<D> averaged = Packed<D>::zero();  ///< what elements average of it
+    bool asked = false;                      ///< the metric is what the function says there
   };
   struct RingNode {
     NodeId node;
@@ -96,9 +97,10 @@ class StarOptimizer {
     if (beats(v, topo_.points[v], averaged()[v])) take_if_allowed(existing(v), site);
   }
   bool beats(NodeId node, const Vec<D>& point, const Packed<D>& averaged);
-  void take_if_allowed(const Apex& apex, const BoundarySite& site);
+  void take_if_allowed(Apex apex, const BoundarySite& site);
+  bool still_known(NodeId n, const Apex& apex) const;
   void start_from_current();
-  Apex existing(NodeId v) const { return {v, topo_.points[v], metric_[v], averaged()[v]}; }
+  Apex existing(NodeId v) const { return {v, topo_.points[v], metric_[v], averaged()[v], false}; }
   Apex new_point(const Vec<D>& x, const Packed<D>& metric) const;
   void replace_cavity(const Apex& apex, NodeId moved);
   const Packed<D>& carried(NodeId n) const;
@@ -173,6 +175,7 @@ class StarOptimizer {
   Apex best_apex_;
   bool found_ = false;
   std::uint64_t dice_ = 0;
+  NodeId moves_ = 0;  ///< takes the place of a new point; 0: a new node does
   struct Birth {
     Element nodes;
     std::int32_t label;

@@ -65,7 +65,8 @@ void StarOptimizer<D>::offer_moves(NodeId s, const BoundarySite& site) {
       x = *on;
     }
     const bool near = metric_[s].quad(x - old) < short_move2;
-    offer(near ? Apex{0, x, metric_[s], averaged()[s]} : new_point(x, metric_in_star(s, x)), site);
+    offer(near ? Apex{0, x, metric_[s], averaged()[s], false} : new_point(x, metric_in_star(s, x)),
+          site);
   };
   if (const auto step = newton_step(s, site)) {
     const double before = best_cost_;

@@ -13,6 +13,8 @@ namespace {
 
 /// Elements of a block: large enough that little lies on its rim, small enough for the cache.
 constexpr std::size_t block_elements = 24000;
+/// Rounds in a row that a node may be locked.
+constexpr int patience = 2;
 /// Nodes that stay in one leaf when they are sorted in space.
 constexpr std::size_t leaf_nodes = 32;
 
@@ -116,7 +118,15 @@ BlockPartition<D>::BlockPartition(const WorkMesh<D>& mesh, int round, int thread
   for (std::size_t e = 0; e < home.size(); ++e)
     for (NodeId n : mesh.elements[e])
       if (n != 0) home[e] = std::max(home[e], node_block_[n]);
-  fill(mesh, home, static_cast<int>(count));
+  bool any = false;
+  if (depth > 0 && !mesh.waits.empty())
+    for (std::size_t e = 0; e < home.size(); ++e)
+      for (NodeId n : mesh.elements[e])
+        if (mesh.waits[n] >= patience) {
+          home[e] = static_cast<std::int32_t>(count);
+          any = true;
+        }
+  fill(mesh, home, static_cast<int>(count) + (any ? 1 : 0));
 }
 
 template <int D>
@@ -210,6 +220,7 @@ WorkMesh<D> merge(const WorkMesh<D>& before, std::vector<Block<D>>& blocks, int 
   out.asked.resize(before.asked.empty() ? 0 : next);
   out.fixed.resize(next, 0);
   out.dirty.resize(next, 0);
+  out.waits.resize(next, 0);
   out.elements.resize(elements);
   out.label.resize(elements);
   for (std::size_t n = 1; n < shared.size(); ++n) {
@@ -219,6 +230,8 @@ WorkMesh<D> merge(const WorkMesh<D>& before, std::vector<Block<D>>& blocks, int 
     out.metric[to] = before.metric[n];
     if (!before.asked.empty()) out.asked[to] = before.asked[n];
     out.fixed[to] = before.fixed[n];
+    const int waited = before.waits.empty() ? 0 : before.waits[n];
+    out.waits[to] = static_cast<char>(std::min(waited + 1, patience));
   }
   for (const auto& b : blocks)
     for (std::size_t n = 1; n < b.shared.size(); ++n)
@@ -271,6 +284,7 @@ void sort_in_space(WorkMesh<D>& mesh) {
   reorder(mesh.asked);
   reorder(mesh.fixed);
   reorder(mesh.dirty);
+  reorder(mesh.waits);
   for (auto& e : mesh.elements)
     for (NodeId& n : e) n = id[n];
   // Elements follow their lowest node.

@@ -18,6 +18,7 @@ struct WorkMesh {
   std::vector<Vec<D>> asked{Vec<D>::Zero()};   ///< [node] where the metric function was asked last
   std::vector<char> fixed{0};                  ///< [node] never moves nor disappears
   std::vector<char> dirty{0};                  ///< [node] has surroundings not looked at yet
+  std::vector<char> waits;  ///< [node] rounds in a row that it was locked; or empty
   std::vector<Element> elements;
   std::vector<std::int32_t> label;  ///< [element] body; of a virtual one: tag
 
@@ -34,7 +35,8 @@ struct Block {
 
 /// Cuts the mesh into blocks of whole elements, by halving the nodes across the direction in which
 /// most elements lie. A function of the mesh and the round alone, so that threads do not matter;
-/// `round` shifts the cuts.
+/// `round` shifts the cuts. Elements so large that they meet several blocks wherever the cuts are
+/// would never be looked at: what is around nodes that have waited is a block of its own.
 template <int D>
 class BlockPartition {
  public:

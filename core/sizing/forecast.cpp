@@ -140,11 +140,11 @@ class Integral {
   std::atomic<bool> bad_ = false;
 };
 
-/// From the measures in the metric with all sizes times `s`.
-MeshForecast forecast_of(double volume, double area, double s) {
+/// From the measures in the metric.
+MeshForecast forecast_of(double volume, double area) {
   MeshForecast f;
-  f.elements = kElements * volume / (s * s * s * unit_simplex_measure(3));
-  f.nodes = kNodesAnElement * f.elements + kNodesAFacet * area / (s * s * unit_simplex_measure(2));
+  f.elements = kElements * volume / unit_simplex_measure(3);
+  f.nodes = kNodesAnElement * f.elements + kNodesAFacet * area / unit_simplex_measure(2);
   f.memory = 1e-6 * bytes_an_element<3> * f.elements;
   return f;
 }
@@ -171,8 +171,8 @@ Result<SizingForecast> forecast_mesh(const SimplexMesh<3>& mesh, const MetricFun
     return Error{Code::bad_input, "The metric to forecast from is not positive definite.",
                  "Sizes must be positive and finite in every direction."};
   SizingForecast out;
-  out.natural = forecast_of(volume.total()[0], area.total()[0], params.size_factor);
-  out.corrected = forecast_of(volume.total()[1], area.total()[1], params.size_factor);
+  out.natural = forecast_of(volume.total()[0], area.total()[0]);
+  out.corrected = forecast_of(volume.total()[1], area.total()[1]);
   out.samples = volume.samples() + area.samples();
   progress.report(1);
   return out;

@@ -20,7 +20,6 @@ struct SizingForecast {
 };
 
 struct ForecastParams {
-  double size_factor = 1;      ///< of all sizes, when others are asked than those of the metric
   double tolerance = 0.02;     ///< relative change of a part's share that is worth a finer look
   std::size_t samples = 8000;  ///< beyond one an element, where no further division begins
   int threads = 0;             ///< 0: all cores; the result does not depend on it

@@ -50,12 +50,14 @@ std::optional<FlowForecast> forecast_flow(const Study& study, const std::string&
 }
 
 Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& first,
-                                     const MetricFunction<3>& natural, const SizingField& sizing,
-                                     const Progress& progress) {
+                                     const MetricFunction<3>& natural, const ChordField& chords,
+                                     const SizingField& sizing, const Progress& progress) {
   ForecastParams params;
-  params.size_factor = 1 / kWantedLayers;
   params.threads = study.options.threads;
-  return forecast_mesh(first, natural, sizing, params, progress);
+  const auto asked = [&](const Vec<3>& x) -> Metric<3> {
+    return chords.at(kWantedLayers * kWantedLayers * natural(x), x);
+  };
+  return forecast_mesh(first, asked, sizing, params, progress);
 }
 
 Result<std::vector<FirstMesh>> first_meshes(
@@ -88,9 +90,11 @@ Result<std::vector<BodyForecast>> forecast_from(const std::vector<FirstMesh>& fi
     const auto start = Clock::now();
     const NaturalDetector detector(part.surface);
     const NaturalParams natural = natural_params(study, part);
+    const Progress own = progress.portion(at / count, (at + 1) / count);
+    const auto chords = chords_of(study, part, own.portion(0, 0.2));
     Result<SizingForecast> mesh = forecast_body(
         study, first[b].mesh, [&](const Vec<3>& x) { return detector.at(x, natural).metric; },
-        *sizing, progress.portion(at / count, (at + 1) / count));
+        *chords, *sizing, own.portion(0.2, 1));
     if (!mesh) return mesh.error();
     bodies.push_back({part.name, *mesh, forecast_flow(study, part.name, mesh->corrected),
                       std::chrono::duration<double>(Clock::now() - start).count()});

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/base/progress.h"
+#include "core/multidomain/chord_metric.h"
 #include "core/optimize/generate.h"
 #include "core/sizing/forecast.h"
 #include "core/study/first_mesh.h"
@@ -25,11 +26,11 @@ struct BodyForecast {
   double seconds = 0;                  ///< the forecast itself took, without the first mesh
 };
 
-/// Of a body whose first mesh is there; `natural` is the detector's answer at a point.
-/// Errors: those of `forecast_mesh`.
+/// Of a body whose first mesh is there; `natural` is the detector's answer at a point, `chords`
+/// what the surface asks for beside. Errors: those of `forecast_mesh`.
 Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& first,
-                                     const MetricFunction<3>& natural, const SizingField& sizing,
-                                     const Progress& progress = {});
+                                     const MetricFunction<3>& natural, const ChordField& chords,
+                                     const SizingField& sizing, const Progress& progress = {});
 
 /// Of the body called `body`, whose mesh without a flow is `mesh`; null where none is asked for.
 std::optional<FlowForecast> forecast_flow(const Study& study, const std::string& body,

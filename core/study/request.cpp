@@ -10,6 +10,8 @@ namespace lamella {
 
 namespace {
 
+constexpr double kChordGrowth = 1;  // walls are fine across anyway
+
 Result<void> check_method_of_field(const Study& study, const std::vector<std::string>& names) {
   const StudyFlow& f = *study.flow;
   if (f.field->name.empty())
@@ -159,6 +161,20 @@ NaturalParams natural_params(const Study& study, const Part& part) {
   params.max_anisotropy = study.options.max_anisotropy.value_or(0);
   params.threads = study.options.threads;
   return params;
+}
+
+double chord_tolerance_of(const Study& study, const Part& part) {
+  return study.options.chord_tolerance.value_or(1e-3 * diagonal_of(part.surface.points));
+}
+
+std::unique_ptr<const ChordField> chords_of(const Study& study, const Part& part,
+                                            const Progress& progress) {
+  ChordParams params;
+  params.tolerance = chord_tolerance_of(study, part);
+  params.growth = kChordGrowth;
+  params.smallest = natural_params(study, part).h_min;
+  params.threads = study.options.threads;
+  return std::make_unique<const ChordField>(ChordField::of_body(part.surface, params, progress));
 }
 
 }  // namespace lamella

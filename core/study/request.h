@@ -1,7 +1,10 @@
 #pragma once
 
+#include <memory>
+
 #include "core/base/result.h"
 #include "core/geometry/surface.h"
+#include "core/multidomain/chord_metric.h"
 #include "core/natural/natural_metric.h"
 #include "core/study/study.h"
 
@@ -22,5 +25,13 @@ Result<void> check_request(const Study& study, const std::vector<Part>& parts);
 
 /// The natural metric that the study asks for the part, defaults filled in.
 NaturalParams natural_params(const Study& study, const Part& part);
+
+/// mm, how far the part's mesh may be from its shape.
+double chord_tolerance_of(const Study& study, const Part& part);
+
+/// What curves and details of the part's surface ask for beside the natural metric, no finer than
+/// h_min: elements would else be poor where the mesh has to follow them.
+std::unique_ptr<const ChordField> chords_of(const Study& study, const Part& part,
+                                            const Progress& progress = {});
 
 }  // namespace lamella

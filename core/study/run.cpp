@@ -57,11 +57,10 @@ class BodyLoop {
         across_(across),
         options_(study.options),
         settings_(settings_of(study, part.name)) {
-    const double diagonal = diagonal_of(part.surface.points);
     outcome_.name = part.name;
     outcome_.layers_asked = settings_.layers;
     outcome_.cad_volume = part.cad_volume;
-    outcome_.chord_tolerance = options_.chord_tolerance.value_or(1e-3 * diagonal);
+    outcome_.chord_tolerance = chord_tolerance_of(study, part);
     natural_ = natural_params(study, part);
     outcome_.h_min = natural_.h_min;
     flow_h_min_ = flow_h_min(study, natural_.h_min);
@@ -83,7 +82,8 @@ class BodyLoop {
     outcome_.first_mesh_by = first->made_by;
     outcome_.notes.insert(outcome_.notes.end(), first->notes.begin(), first->notes.end());
     detector_ = make_detector(options_.detector, part_.surface);
-    if (Result<void> enough = look_ahead(first->mesh, progress.portion(0.7, 0.8)); !enough)
+    chords_ = chords_of(study_, part_, progress.portion(0.7, 0.72));
+    if (Result<void> enough = look_ahead(first->mesh, progress.portion(0.72, 0.8)); !enough)
       return enough;
     return accept(std::move(first->mesh), start, progress.portion(0.8, 1));
   }
@@ -107,9 +107,7 @@ class BodyLoop {
     MetricField<3> asked;
     if (const MetricFunction<3> natural = detector_->function(natural_)) {
       asked_at = [this, natural](const Vec<3>& x) -> Metric<3> {
-        return sizing_.apply(x, of_flow_.apply(x, correction_.apply(x, natural(x), natural_.h_min),
-                                               flow_h_min_)) *
-               kAskedScale;
+        return sized(x, correction_.apply(x, natural(x), natural_.h_min)) * kAskedScale;
       };
     } else {
       asked = current_.metric;
@@ -168,8 +166,8 @@ class BodyLoop {
     MetricField<3> natural = natural_at_nodes_;
     const auto ask = [&](std::size_t i) {
       const Vec<3>& x = current_.mesh.points[i + 1];
-      natural[i + 1] =
-          sizing_.apply(x, correction_.apply(x, natural_at_nodes_[i + 1], natural_.h_min));
+      natural[i + 1] = sizing_.apply(
+          x, chords_->at(correction_.apply(x, natural_at_nodes_[i + 1], natural_.h_min), x));
     };
     if (!parallel_each(current_.mesh.node_count(), options_.threads, progress.portion(0, 0.02),
                        ask))
@@ -258,9 +256,9 @@ class BodyLoop {
     outcome_.notes.push_back(text);
   }
 
-  /// The metric asked where the natural one is `natural`.
+  /// The metric asked where the natural one, corrected for the layers or not, is `natural`.
   Metric<3> sized(const Vec<3>& x, const Metric<3>& natural) const {
-    return sizing_.apply(x, of_flow_.apply(x, natural, flow_h_min_));
+    return sizing_.apply(x, of_flow_.apply(x, chords_->at(natural, x), flow_h_min_));
   }
 
   /// What the boundary layers asked by hand came to.
@@ -308,7 +306,8 @@ class BodyLoop {
   Result<void> look_ahead(const SimplexMesh<3>& first, const Progress& progress) {
     const MetricFunction<3> natural = detector_->function(natural_);
     if (!natural) return {};
-    Result<SizingForecast> made = forecast_body(study_, first, natural, sizing_, progress);
+    Result<SizingForecast> made =
+        forecast_body(study_, first, natural, *chords_, sizing_, progress);
     if (!made) return made.error();
     forecast_ = made->corrected;
     // With the flow, which solves on the mesh and then refines it.
@@ -341,13 +340,13 @@ class BodyLoop {
     if (!of_flow_.empty()) natural_at_nodes_ = next.metric;
     std::vector<char> by_hand(next.mesh.points.size(), 0);
     const auto correct = [&](std::size_t i) {
-      const Metric<3> natural = next.metric[i + 1];
-      next.metric[i + 1] = sized(next.mesh.points[i + 1], natural);
-      by_hand[i + 1] = next.metric[i + 1] != natural;
+      const Vec<3>& x = next.mesh.points[i + 1];
+      const Metric<3> alone = chords_->at(next.metric[i + 1], x);
+      next.metric[i + 1] = sizing_.apply(x, of_flow_.apply(x, alone, flow_h_min_));
+      by_hand[i + 1] = next.metric[i + 1] != alone;
     };
-    const bool natural_alone = sizing_.empty() && of_flow_.empty();
-    if (!natural_alone && !parallel_each(next.mesh.node_count(), options_.threads,
-                                         progress.portion(0.55, 0.6), correct))
+    if (!parallel_each(next.mesh.node_count(), options_.threads, progress.portion(0.55, 0.6),
+                       correct))
       return cancelled_error();
     next.thickness = std::move(field->thickness);
     Result<IterationRecord> record = measure(next, progress.portion(0.6, 0.75));
@@ -431,6 +430,7 @@ class BodyLoop {
   SizingField sizing_;
   std::unique_ptr<const FaceGroups> groups_;
   std::unique_ptr<const Part> grouped_;
+  std::unique_ptr<const ChordField> chords_;
   LayerCorrection correction_;
   CorrectionField of_flow_;
   MetricField<3> natural_at_nodes_;  ///< of the current mesh, where a flow will correct it

@@ -17,7 +17,7 @@ double chord(double radius) { return std::sqrt(8 * 0.5 * tolerance * radius); }
 TEST(ChordField, ChordsOfABallKeepTheTolerance) {
   const double r = 0.7;
   const Partition<3> ball({{"ball", ball_zone<3>(Vec<3>::Zero(), r)}});
-  const ChordField field(ball, {testing::sphere_surface(r, 5)}, tolerance);
+  const ChordField field(ball, {testing::sphere_surface(r, 5)}, {tolerance});
   std::mt19937 rng(1);
   for (int i = 0; i < 50; ++i) {
     const Vec<3> n = test::random_vector<3>(rng).normalized();
@@ -35,7 +35,7 @@ TEST(ChordField, ACylinderIsCurvedAroundOnly) {
   const double a = 0.3, b = 0.5;
   const ReferenceSurface<3> tube = testing::tube_surface(a, b, 2, 200, 1);
   const Partition<3> rod({{"tube", surface_zone<3>(tube)}});
-  const ChordField field(rod, {tube}, tolerance);
+  const ChordField field(rod, {tube}, {tolerance});
   for (const double r : {a, b}) {
     const Metric<3> m = field.at(isotropic_metric<3>(large), {r, 0, 1});
     EXPECT_NEAR(1 / metric_length<3>(Vec<3>::UnitY(), m), chord(r), 0.1 * chord(r));
@@ -49,7 +49,7 @@ TEST(ChordField, SizesGrowWithTheDistanceFromWhatIsCurved) {
   const ReferenceSurface<3> sphere = testing::sphere_surface(r, 5, {0, 0, 0});
   const Partition<3> partition({{"ball", ball_zone<3>(Vec<3>::Zero(), r)},
                                 {"half", half_space_zone<3>(Vec<3>(0, 0, 1), -0.5)}});
-  const ChordField field(partition, {sphere, {}}, tolerance, growth);
+  const ChordField field(partition, {sphere, {}}, {tolerance, growth});
   const Metric<3> given = isotropic_metric<3>(large);
   for (const double z : {-0.25, 0.25, -0.45}) {
     const double expected = chord(r) + growth * (std::abs(z) - r);
@@ -68,7 +68,7 @@ TEST(ChordField, SizesAreNoLargerThanDetails) {
                             [](int i, int, int k) { return i != 1 || k == 0; });
   find_features(s, 0.6);
   const Partition<3> partition({{"block", surface_zone<3>(s)}});
-  const ChordField field(partition, {s}, tolerance, growth);
+  const ChordField field(partition, {s}, {tolerance, growth});
   const Metric<3> given = isotropic_metric<3>(large);
   const auto size = [&](const Vec<3>& x, int axis) {
     return 1 / metric_length<3>(Vec<3>::Unit(axis), field.at(given, x));
@@ -87,7 +87,7 @@ TEST(ChordField, FlatSidesAndTheirEdgesAskForNothing) {
   ReferenceSurface<3> s = testing::box_surface({1, 2, 3});
   find_features(s, 0.6);
   const Partition<3> partition({{"box", surface_zone<3>(s)}});
-  const ChordField field(partition, {s}, tolerance);
+  const ChordField field(partition, {s}, {tolerance});
   const Metric<3> given = isotropic_metric<3>(large);
   for (const Vec<3>& x : {Vec<3>(0.5, 1, 3.1), Vec<3>(0.01, 0.02, 2.9), Vec<3>(0.5, 0.5, 0.5),
                           Vec<3>(0, 0, 1.2), Vec<3>(1, 2, 3)})
