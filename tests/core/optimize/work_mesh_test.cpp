@@ -187,6 +187,29 @@ TYPED_TEST(WorkMeshes, RoundsShiftTheCuts) {
   EXPECT_NE(a.extract(work, 0).mesh.points.size(), b.extract(work, 0).mesh.points.size());
 }
 
+TYPED_TEST(WorkMeshes, NoNodeIsLockedThreeTimesInARowWhereverTheCutsAre) {
+  constexpr int D = TypeParam::value;
+  auto work = this->mesh();
+  std::map<std::array<double, D>, int> in_a_row;
+  int longest = 0;
+  for (int round = 0; round < 6; ++round) {
+    const BlockPartition<D> partition(work, 0, 1);  // the same cuts again and again
+    auto blocks = this->blocks(work, partition);
+    std::map<std::array<double, D>, int> now;
+    for (const auto& b : blocks)
+      for (std::size_t n = 1; n < b.shared.size(); ++n) {
+        if (b.shared[n] == 0) continue;
+        const auto at = place<D>(b.mesh.points[n]);
+        const auto before = in_a_row.find(at);
+        now[at] = 1 + (before == in_a_row.end() ? 0 : before->second);
+        longest = std::max(longest, now[at]);
+      }
+    in_a_row.swap(now);
+    work = merge(work, blocks, 1);
+  }
+  EXPECT_EQ(longest, 2);
+}
+
 TYPED_TEST(WorkMeshes, ThreadsDoNotMatter) {
   constexpr int D = TypeParam::value;
   const auto work = this->mesh();

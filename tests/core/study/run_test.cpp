@@ -8,6 +8,7 @@
 #include "core/study/measure.h"
 #include "core/study/request.h"
 #include "tests/support/plate_part.h"
+#include "tests/support/sample_surfaces.h"
 
 namespace lamella {
 namespace {
@@ -44,6 +45,22 @@ TEST(Run, APlateGetsItsLayersAndKeepsItsVolume) {
   EXPECT_EQ(outcome->state->mesh.groups, std::vector<std::string>{"walls"});
   EXPECT_EQ(told.size(), outcome->records.size());
   EXPECT_EQ(told.front(), 0);
+}
+
+TEST(Run, DetailsInAWallHaveGoodElementsToo) {
+  // A groove as wide as a third of the wall, which is 20 times as long as thick.
+  Part part;
+  part.name = "grooved";
+  part.surface = testing::cell_surface({{{0, 9.3, 9.6, 20}, {0, 12}, {0, 0.85, 1}}},
+                                       [](int i, int, int k) { return i != 1 || k == 0; });
+  find_features(part.surface, 0.5);
+  part.cad_volume = 20 * 12 - 0.3 * 12 * 0.15;
+  Study study;
+  study.bodies = {{"grooved", 4}};
+  const Result<Outcome> outcome = run(study, {part}, real());
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  EXPECT_GE(outcome->records.back().quality_min, 0.2);
+  EXPECT_NEAR(outcome->bodies.at(0).mesh_volume, part.cad_volume, 1e-9);
 }
 
 TEST(Run, TheNeighborhoodDetectorRefinesAcrossThePlate) {
