@@ -218,6 +218,7 @@ ChordField::ChordField(const Partition<3>& partition,
                 own.portion(0.5, 1), levels);
   }
   for (auto& [power, level] : levels) {
+    level.least = std::ldexp(1, power);
     level.surface.faces.resize(1);
     level.locator = std::make_unique<const Locator<3>>(level.surface);
     level.surface = {};
@@ -233,9 +234,13 @@ ChordField ChordField::of_body(const ReferenceSurface<3>& surface, const ChordPa
 Metric<3> ChordField::at(const Metric<3>& metric, const Vec<3>& x) const {
   Metric<3> out = metric;
   const double largest = 1 / std::sqrt(spectrum<3>(metric).values[0]);
-  for (const Level& level : levels_)
-    if (const auto on = level.locator->nearest(x, largest / growth_))
+  for (const Level& level : levels_) {
+    // Farther away sizes have grown to what there is.
+    const double reach = (largest - level.least) / growth_;
+    if (!(reach > 0)) break;
+    if (const auto on = level.locator->nearest(x, reach))
       out = level.curved[on->facet].at(out, std::sqrt(on->distance2), growth_);
+  }
   return out;
 }
 

@@ -49,6 +49,7 @@ class ChordField {
   struct Level {
     ReferenceSurface<3> surface;
     std::vector<Curved> curved;  ///< [facet]
+    double least = 0;            ///< mm, that sizes are not below
     std::unique_ptr<const Locator<3>> locator;
 
     void add(const std::array<Vec<3>, 3>& facet, const Curved& asked);

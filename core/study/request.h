@@ -15,7 +15,7 @@ namespace lamella {
 inline constexpr double kAskedFiner = 1.02;
 
 /// Layers that the average place is to have, of n, so that the poor ones have n too.
-inline constexpr double kWantedLayers = 1.1;
+inline constexpr double kWantedLayers = 1.08;
 
 /// What is around the bodies in one mesh of all, where the domain is no body itself.
 inline constexpr const char* kBackground = "background";
