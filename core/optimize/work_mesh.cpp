@@ -13,8 +13,9 @@ namespace {
 
 /// Elements of a block: large enough that little lies on its rim, small enough for the cache.
 constexpr std::size_t block_elements = 24000;
-/// Rounds in a row that a node may be locked.
+/// Rounds in a row that a node of an edge longer than this, in the metric, may be locked.
 constexpr int patience = 2;
+constexpr double very_long = 4;
 /// Nodes that stay in one leaf when they are sorted in space.
 constexpr std::size_t leaf_nodes = 32;
 
@@ -95,6 +96,26 @@ std::vector<NodeId>& node_map(std::size_t size) {
   return map;
 }
 
+/// [node] whether it has waited at the end of a very long edge; empty when none has.
+template <int D>
+std::vector<char> stuck_nodes(const WorkMesh<D>& mesh) {
+  std::vector<char> stuck;
+  if (mesh.waits.empty()) return stuck;
+  constexpr double limit = very_long * very_long * very_long * very_long;
+  for (const auto& nodes : mesh.elements)
+    for (NodeId a : nodes) {
+      if (a == 0 || mesh.waits[a] < patience) continue;
+      for (NodeId b : nodes) {
+        if (b == 0) continue;
+        const Vec<D> edge = mesh.points[b] - mesh.points[a];
+        if (!(mesh.metric[a].quad(edge) * mesh.metric[b].quad(edge) > limit)) continue;
+        if (stuck.empty()) stuck.resize(mesh.points.size(), 0);
+        stuck[a] = 1;
+      }
+    }
+  return stuck;
+}
+
 }  // namespace
 
 template <int D>
@@ -118,15 +139,12 @@ BlockPartition<D>::BlockPartition(const WorkMesh<D>& mesh, int round, int thread
   for (std::size_t e = 0; e < home.size(); ++e)
     for (NodeId n : mesh.elements[e])
       if (n != 0) home[e] = std::max(home[e], node_block_[n]);
-  bool any = false;
-  if (depth > 0 && !mesh.waits.empty())
+  const std::vector<char> stuck = depth > 0 ? stuck_nodes(mesh) : std::vector<char>{};
+  if (!stuck.empty())
     for (std::size_t e = 0; e < home.size(); ++e)
       for (NodeId n : mesh.elements[e])
-        if (mesh.waits[n] >= patience) {
-          home[e] = static_cast<std::int32_t>(count);
-          any = true;
-        }
-  fill(mesh, home, static_cast<int>(count) + (any ? 1 : 0));
+        if (stuck[n]) home[e] = static_cast<std::int32_t>(count);
+  fill(mesh, home, static_cast<int>(count) + (stuck.empty() ? 0 : 1));
 }
 
 template <int D>

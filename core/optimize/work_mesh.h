@@ -36,7 +36,8 @@ struct Block {
 /// Cuts the mesh into blocks of whole elements, by halving the nodes across the direction in which
 /// most elements lie. A function of the mesh and the round alone, so that threads do not matter;
 /// `round` shifts the cuts. Elements so large that they meet several blocks wherever the cuts are
-/// would never be looked at: what is around nodes that have waited is a block of its own.
+/// would never be looked at: what is around nodes that have waited at very long edges is a block of
+/// its own.
 template <int D>
 class BlockPartition {
  public:
