@@ -41,14 +41,16 @@ QStringList unfitting(const QWidget& window) {
   return found;
 }
 
-class FitTest : public WindowFixture, public testing::WithParamInterface<const char*> {
+/// In each language at each size: as the window starts, and on the smallest screen it is for.
+class FitTest : public WindowFixture,
+                public testing::WithParamInterface<std::tuple<const char*, QSize>> {
  protected:
   FitTest()
       : WindowFixture([](Services made) {
-          speak(*qApp, GetParam());
+          speak(*qApp, std::get<0>(GetParam()));
           return made;
         }) {
-    window_.resize(1440, 920);  // as it starts
+    window_.resize(std::get<1>(GetParam()));
   }
   ~FitTest() override {
     qDeleteAll(qApp->findChildren<QTranslator*>());
@@ -56,6 +58,7 @@ class FitTest : public WindowFixture, public testing::WithParamInterface<const c
   }
   void expect_fit(const char* state) {
     QTest::qWait(30);
+    EXPECT_EQ(window_.size(), std::get<1>(GetParam())) << state << ": it needs more";
     EXPECT_EQ(unfitting(window_).join("\n").toStdString(), "") << state;
   }
 };
@@ -74,21 +77,37 @@ TEST_P(FitTest, EveryTextHasItsRoom) {
   run();
   action(Act::section)->setChecked(true);
   session().select_item({ItemKind::cut, 0});
+  for (int color = 0; color <= int(ColorBy::field); ++color) {
+    window_.view().set_color_by(ColorBy(color));
+    expect_fit(qPrintable(QString("color %1").arg(color)));
+  }
+  add_group(session(), GroupKind::gate, session().body(0).name, {0});
+  add_group(session(), GroupKind::vent, session().body(0).name, {1});
+  action(Act::solve_flow)->trigger();
+  ASSERT_TRUE(wait_idle());
   auto* results = window_.findChild<QTabWidget*>();
   for (int tab = 0; tab < results->count(); ++tab) {
     results->setCurrentIndex(tab);
     expect_fit(qPrintable("results: " + results->tabText(tab)));
   }
-  action(Act::shortcuts)->trigger();
-  action(Act::preferences)->trigger();
+  // One mesh of all bodies has one plot more, and a body to choose whose filling is shown.
+  action(Act::zone_ball)->trigger();
+  window_.view().set_color_by(ColorBy::filling);
+  results->setCurrentIndex(0);
+  expect_fit("domain");
+  for (const Act act : {Act::shortcuts, Act::preferences, Act::journal}) action(act)->trigger();
   for (QWidget* top : QApplication::topLevelWidgets()) {
     if (!qobject_cast<QDialog*>(top) || !top->isVisible()) continue;
     EXPECT_EQ(unfitting(*top).join("\n").toStdString(), "") << qPrintable(top->windowTitle());
+    EXPECT_LE(top->width(), 1280) << qPrintable(top->windowTitle());
+    EXPECT_LE(top->height(), 740) << qPrintable(top->windowTitle());
     top->close();
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Languages, FitTest, testing::Values("en", "fr"));
+INSTANTIATE_TEST_SUITE_P(Languages, FitTest,
+                         testing::Combine(testing::Values("en", "fr"),
+                                          testing::Values(QSize(1440, 920), QSize(1280, 800))));
 
 TEST(Units, APlaceHasNoSpeckOfANumber) {
   EXPECT_EQ(units::point({-11.21, -21.13, -2.872e-16}), "(-11.21, -21.13, 0)");

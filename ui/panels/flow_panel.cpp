@@ -61,9 +61,9 @@ QString cell(const QString& text, bool number) {
 FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
     : QWidget(parent), session_(session) {
   auto* layout = new QHBoxLayout(this);
-  layout->setContentsMargins(14, 8, 8, 8);
-  layout->setSpacing(18);
-  layout->addWidget(make_settings());
+  layout->setContentsMargins(12, 8, 8, 8);
+  layout->setSpacing(14);
+  layout->addWidget(make_settings(), 1);
   auto* right = new QVBoxLayout;
   right->setSpacing(6);
   auto* tools = new QHBoxLayout;
@@ -88,7 +88,7 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
   found_->setWordWrap(true);
   found_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   auto* results = new QHBoxLayout;
-  results->setSpacing(18);
+  results->setSpacing(12);
   results->addWidget(found_, 1);
   residuals_ = new Plot(tr("Residual"));
   residuals_->setObjectName("residual_plot");
@@ -112,7 +112,7 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
 
 QWidget* FlowPanel::make_settings() {
   auto* box = new QWidget;
-  box->setFixedWidth(310);
+  box->setMaximumWidth(310);
   auto* layout = new QVBoxLayout(box);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(4);

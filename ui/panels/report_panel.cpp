@@ -24,6 +24,7 @@ ReportPanel::ReportPanel(Session& session, QWidget* parent)
   setAccessibleName(tr("Report"));
   setFrameShape(QFrame::NoFrame);
   document()->setDocumentMargin(14);
+  setWordWrapMode(QTextOption::WordWrap);
   setOpenLinks(false);
   connect(this, &QTextBrowser::anchorClicked, this, &ReportPanel::jump);
   connect(&Units::get(), &Units::changed, this, &ReportPanel::refresh);
@@ -66,7 +67,7 @@ void ReportPanel::refresh() {
   for (const BodyOutcome& body : outcome->bodies) {
     const double off =
         body.cad_volume > 0 ? (body.mesh_volume - body.cad_volume) / body.cad_volume * 100 : 0;
-    html += "<tr><td style='padding: 4px 14px 4px 0'><b>" +
+    html += "<tr><td style='padding: 4px 14px 4px 0; white-space: nowrap'><b>" +
             QString::fromStdString(body.name).toHtmlEscaped() + "</b></td>";
     html += cell(QString::number(body.layers_asked));
     html += cell(QString::number(body.layers.mean, 'f', 2));
