@@ -24,6 +24,7 @@
 #include "ui/actions/actions.h"
 #include "ui/language.h"
 #include "ui/main_window.h"
+#include "ui/panels/flow_panel.h"
 #include "ui/report_pdf.h"
 #include "ui/session/forecaster.h"
 #include "ui/session/session.h"
@@ -153,7 +154,10 @@ int play(ui::MainWindow& window, const Script& script) {
   if (const auto kind = kinds.indexOf(script.select); kind > 0)
     session.select_item({ui::ItemKind(kind), 0});
   if (script.cut) window.view().look_at_section();
-  wait_until([&] { return !window.view().walls().busy() && !window.forecaster().busy(); });
+  const auto* flow = window.findChild<ui::FlowPanel*>();
+  wait_until([&] {
+    return !window.view().walls().busy() && !window.forecaster().busy() && !flow->busy();
+  });
   if (script.flat) window.actions()[ui::Act::crinkle]->setChecked(false);
   if (const QStringList at = script.near.split(','); at.size() == 4)
     window.view().look_near(Vec<3>(at[0].toDouble(), at[1].toDouble(), at[2].toDouble()),

@@ -137,7 +137,7 @@ void MainWindow::make_body() {
   rows_->setStretchFactor(0, 1);
   rows_->setSizes({570, 230});
   columns_->setStretchFactor(1, 1);
-  columns_->setSizes({264, 840, 316});  // what a small screen leaves to the middle
+  columns_->setSizes({272, 832, 316});  // what a small screen leaves to the middle
   for (QSplitter* splitter : {rows_, columns_}) {
     splitter->setHandleWidth(8);
     splitter->setChildrenCollapsible(false);

@@ -3072,7 +3072,7 @@ Les barres croissent comme le logarithme du nombre</translation>
     </message>
     <message>
         <source>Volume off the CAD&apos;s</source>
-        <translation>Écart de volume à la CAO</translation>
+        <translation>Écart de volume</translation>
     </message>
     <message>
         <source>volume %1, first mesh by %2</source>
@@ -3606,7 +3606,7 @@ Les propriétés du maillage ont ses réglages.</translation>
     </message>
     <message>
         <source>is</source>
-        <translation>obtenu</translation>
+        <translation>réel</translation>
     </message>
     <message>
         <source>Show %1</source>

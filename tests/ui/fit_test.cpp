@@ -65,7 +65,7 @@ class FitTest : public WindowFixture,
 
 TEST_P(FitTest, EveryTextHasItsRoom) {
   expect_fit("start");
-  open_part("plate");
+  open_part("t_junction");
   expect_fit("body");
   action(Act::add_group)->trigger();
   expect_fit("group");

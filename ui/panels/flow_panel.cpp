@@ -4,6 +4,7 @@
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSlider>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -63,7 +64,16 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
   auto* layout = new QHBoxLayout(this);
   layout->setContentsMargins(12, 8, 8, 8);
   layout->setSpacing(14);
-  layout->addWidget(make_settings(), 1);
+  // Where there is no height for all settings they scroll, and what was found stays in sight.
+  auto* settings = new QScrollArea;
+  settings->setWidget(make_settings());
+  settings->widget()->setAutoFillBackground(false);
+  settings->setWidgetResizable(true);
+  settings->setFrameShape(QFrame::NoFrame);
+  settings->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  settings->setMaximumWidth(324);
+  settings->setAccessibleName(tr("Correct the mesh by the flow"));
+  layout->addWidget(settings, 1);
   auto* right = new QVBoxLayout;
   right->setSpacing(6);
   auto* tools = new QHBoxLayout;
@@ -112,9 +122,8 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
 
 QWidget* FlowPanel::make_settings() {
   auto* box = new QWidget;
-  box->setMaximumWidth(310);
   auto* layout = new QVBoxLayout(box);
-  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setContentsMargins(0, 0, 6, 0);
   layout->setSpacing(4);
   correct_ = new QCheckBox(tr("Correct the mesh by the flow"));
   correct_->setObjectName("flow_correct");
