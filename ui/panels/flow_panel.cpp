@@ -52,6 +52,18 @@ QString method_title(FlowMethod method) {
   return {};
 }
 
+/// The widget where there may be too little height for it.
+QScrollArea* scrolled_down(QWidget* widget, const QString& name) {
+  auto* area = new QScrollArea;
+  area->setWidget(widget);
+  widget->setAutoFillBackground(false);  // as setWidget made it
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->setAccessibleName(name);
+  return area;
+}
+
 QString cell(const QString& text, bool number) {
   return QString("<td align='%1' style='padding: 2px 14px 2px 0'>%2</td>")
       .arg(number ? "right" : "left", text);
@@ -64,15 +76,9 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
   auto* layout = new QHBoxLayout(this);
   layout->setContentsMargins(12, 8, 8, 8);
   layout->setSpacing(14);
-  // Where there is no height for all settings they scroll, and what was found stays in sight.
-  auto* settings = new QScrollArea;
-  settings->setWidget(make_settings());
-  settings->widget()->setAutoFillBackground(false);
-  settings->setWidgetResizable(true);
-  settings->setFrameShape(QFrame::NoFrame);
-  settings->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  // Each part scrolls by itself: the others stay in sight.
+  QScrollArea* settings = scrolled_down(make_settings(), tr("Correct the mesh by the flow"));
   settings->setMaximumWidth(324);
-  settings->setAccessibleName(tr("Correct the mesh by the flow"));
   layout->addWidget(settings, 1);
   auto* right = new QVBoxLayout;
   right->setSpacing(6);
@@ -99,7 +105,7 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
   found_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   auto* results = new QHBoxLayout;
   results->setSpacing(12);
-  results->addWidget(found_, 1);
+  results->addWidget(scrolled_down(found_, tr("Flow")), 1);
   residuals_ = new Plot(tr("Residual"));
   residuals_->setObjectName("residual_plot");
   residuals_->set_logarithmic(true);

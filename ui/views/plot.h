@@ -35,7 +35,7 @@ class Plot : public QWidget {
   void set_decimals(int decimals) { decimals_ = decimals; }
   /// Where the name of the target is written: by its line, and on no series where there is room.
   QRectF target_label() const;
-  QSize minimumSizeHint() const override { return {112, 130}; }
+  QSize minimumSizeHint() const override { return {112, 104}; }
 
  Q_SIGNALS:
   void hovered(int index);
