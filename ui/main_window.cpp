@@ -531,7 +531,7 @@ void MainWindow::report_run() {
   if (!outcome) return;
   if (!outcome->cancelled && !outcome->converged)
     banner_->show_message(Banner::Kind::info,
-                          tr("The mesh is valid but has not settled within %1 iterations.")
+                          tr("The mesh is valid but had not settled at iteration %1.")
                               .arg(session_->study().options.iterations),
                           tr("The report tells where layers are missing. More iterations, or a "
                              "smaller smallest size at blades, help."));

@@ -1543,6 +1543,10 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <source>Levels</source>
         <translation>Niveaux</translation>
     </message>
+    <message>
+        <source>Flow</source>
+        <translation>Écoulement</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Forecaster</name>
@@ -2100,10 +2104,6 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <translation>   encore %1</translation>
     </message>
     <message>
-        <source>The mesh is valid but has not settled within %1 iterations.</source>
-        <translation>Le maillage est valide mais ne s&apos;est pas stabilisé en %1 itérations.</translation>
-    </message>
-    <message>
         <source>The report tells where layers are missing. More iterations, or a smaller smallest size at blades, help.</source>
         <translation>Le rapport dit où manquent des couches. Davantage d&apos;itérations, ou une taille minimale plus petite aux lames, aident.</translation>
     </message>
@@ -2352,6 +2352,10 @@ Réalisé avec %1.</translation>
     <message>
         <source>Solve</source>
         <translation>Résoudre</translation>
+    </message>
+    <message>
+        <source>The mesh is valid but had not settled at iteration %1.</source>
+        <translation>Le maillage est valide mais n&apos;était pas stabilisé à l&apos;itération %1.</translation>
     </message>
 </context>
 <context>
