@@ -7,9 +7,11 @@
 #include <QToolButton>
 #include <QTranslator>
 
+#include "core/study/study_file.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/commands/study_edits.h"
 #include "ui/language.h"
+#include "ui/panels/recovery_dialog.h"
 #include "ui/units.h"
 
 namespace lamella::ui {
@@ -96,6 +98,14 @@ TEST_P(FitTest, EveryTextHasItsRoom) {
   results->setCurrentIndex(0);
   expect_fit("domain");
   for (const Act act : {Act::shortcuts, Act::preferences, Act::journal}) action(act)->trigger();
+  ASSERT_TRUE(write_study(study(), folder_ / "left.json"));
+  const Recovery::Left left{folder_ / "left.json", folder_ / "battery case, second try.lamella",
+                            QDateTime::currentDateTime()};
+  RecoveryDialog recovery({left, left}, &window_);
+  recovery.show();
+  QTest::qWait(30);
+  if (const QString to = qEnvironmentVariable("LAMELLA_PICTURES"); !to.isEmpty())
+    recovery.grab().save(to + "/recovery-" + std::get<0>(GetParam()) + ".png");
   for (QWidget* top : QApplication::topLevelWidgets()) {
     if (!qobject_cast<QDialog*>(top) || !top->isVisible()) continue;
     EXPECT_EQ(unfitting(*top).join("\n").toStdString(), "") << qPrintable(top->windowTitle());
