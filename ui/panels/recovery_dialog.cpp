@@ -93,7 +93,7 @@ RecoveryDialog::RecoveryDialog(const std::vector<Recovery::Left>& left, QWidget*
   connect(drop, &QPushButton::clicked, this, &RecoveryDialog::discard);
   connect(done, &QPushButton::clicked, this, &RecoveryDialog::journal_asked);
   show_chosen();
-  setMinimumWidth(520);
+  setMinimumWidth(560);
 }
 
 void RecoveryDialog::show_chosen() {
