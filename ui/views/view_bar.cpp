@@ -164,8 +164,10 @@ void ViewBar::show_bodies(const QStringList& names, int current) {
   bodies_->addItems(names);
   bodies_->setCurrentIndex(current);
   const bool filling = color_by() == ColorBy::filling && !names.isEmpty();
+  // There is no room for both in a narrow window, which would grow while they are both there.
+  if (filling) by_->hide();
   bodies_->setVisible(filling);
-  by_->setVisible(!filling);  // there is no room for both in a narrow window
+  by_->setVisible(!filling);
 }
 
 void ViewBar::show_section(const std::optional<Section>& section,
