@@ -2,31 +2,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/roff.h"
 #include "core/base/version.h"
 
 namespace lamella::cli {
-
 namespace {
 
-/// Words as roff takes them for what they are: hyphens to be copied, no requests, no escapes.
-std::string plain(const std::string& text) {
-  std::string out;
-  bool line_begins = true;
-  for (const char c : text) {
-    if (line_begins && (c == '.' || c == '\'')) out += "\\&";
-    if (c == '-')
-      out += "\\-";
-    else if (c == '\\')
-      out += "\\e";
-    else
-      out += c;
-    line_begins = c == '\n';
-  }
-  return out;
-}
-
-std::string bold(const std::string& text) { return "\\fB" + plain(text) + "\\fR"; }
-std::string italic(const std::string& text) { return "\\fI" + plain(text) + "\\fR"; }
+using roff::bold, roff::italic, roff::plain;
 
 /// "-o, --output FILE", or the name of an argument.
 std::string title_of(const CLI::Option& option) {

@@ -1,7 +1,6 @@
 // lamella: the window. It is handed readers, meshers and writers here and knows none of them.
 
 #include <QApplication>
-#include <QCommandLineParser>
 #include <QEventLoop>
 #include <QPainter>
 #include <QSettings>
@@ -17,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/window_options.h"
 #include "app/window_services.h"
 #include "core/base/atomic_file.h"
 #include "core/base/version.h"
@@ -24,6 +24,7 @@
 #include "ui/actions/actions.h"
 #include "ui/language.h"
 #include "ui/main_window.h"
+#include "ui/panels/flow_panel.h"
 #include "ui/report_pdf.h"
 #include "ui/session/forecaster.h"
 #include "ui/session/session.h"
@@ -153,7 +154,10 @@ int play(ui::MainWindow& window, const Script& script) {
   if (const auto kind = kinds.indexOf(script.select); kind > 0)
     session.select_item({ui::ItemKind(kind), 0});
   if (script.cut) window.view().look_at_section();
-  wait_until([&] { return !window.view().walls().busy() && !window.forecaster().busy(); });
+  const auto* flow = window.findChild<ui::FlowPanel*>();
+  wait_until([&] {
+    return !window.view().walls().busy() && !window.forecaster().busy() && !flow->busy();
+  });
   if (script.flat) window.actions()[ui::Act::crinkle]->setChecked(false);
   if (const QStringList at = script.near.split(','); at.size() == 4)
     window.view().look_near(Vec<3>(at[0].toDouble(), at[1].toDouble(), at[2].toDouble()),
@@ -214,9 +218,13 @@ int make_pdf(const QStringList& from, const QString& to) {
 
 int main(int argc, char** argv) {
   using namespace lamella;
-  // A report needs no display.
-  if (std::any_of(argv, argv + argc,
-                  [](const std::string_view word) { return word.substr(0, 12) == "--report-pdf"; }))
+  // What these make needs no display.
+  constexpr std::string_view texts[] = {"-h", "--help",    "--help-all",
+                                        "-v", "--version", "--manual"};
+  if (std::any_of(argv + 1, argv + argc, [&](const std::string_view word) {
+        return word.starts_with("--report-pdf") ||
+               std::find(std::begin(texts), std::end(texts), word) != std::end(texts);
+      }))
     qputenv("QT_QPA_PLATFORM", "offscreen");
   QSurfaceFormat::setDefaultFormat(ui::VtkView::format());
   QApplication application(argc, argv);
@@ -225,74 +233,44 @@ int main(int argc, char** argv) {
   QApplication::setApplicationVersion(QString::fromStdString(std::string(version())));
   QApplication::setDesktopFileName("org.lamella.Lamella");
 
-  QCommandLineParser parser;
-  parser.setApplicationDescription(
-      "Anisotropic tetrahedral meshes with n layers through every wall.");
-  parser.addHelpOption();
-  parser.addVersionOption();
-  parser.addPositionalArgument(
-      "files",
-      "a study (.lamella), STEP, IGES, BREP or STL parts, or one mesh (.msh, .vtu, .mesh, ..)",
-      "[FILE...]");
-  parser.addOption({"report-pdf",
-                    "write the report of FILE, a .report.html or a .lamella, as PDF, and leave",
-                    "OUT.pdf"});
-  const auto option = [&](const QString& name, const QString& text, const QString& value = {}) {
-    QCommandLineOption o(name, text, value);
-    o.setFlags(QCommandLineOption::HiddenFromHelp);
-    parser.addOption(o);
-  };
-  option("run", "mesh the parts");
-  option("iteration", "picture while the run goes on, after this iteration", "K");
-  option("cut", "picture with a section");
-  option("flat", "the section cuts through elements");
-  option("near", "brings what is within R of a point close", "X,Y,Z,R");
-  option("color",
-         "body, quality, thickness, layers, filling, size, or of a flow speed, pressure, shear or "
-         "indicator, or the field of another solver",
-         "FIELD");
-  option("flow", "arrows, lines, levels: what of the flow is drawn", "LIST");
-  option("dark", "the dark theme");
-  option("size", "of the window", "WIDTHxHEIGHT");
-  option("select", "group, sizing, cut or domain whose properties are shown", "KIND");
-  option("tab", "tab of the results, from 0", "K");
-  option("dialog", "export, preferences, shortcuts, journal or search: that instead of the window",
-         "NAME");
-  option("leave", "leave as soon as the window can be used");
-  option("screenshot", "picture of the window, then leave", "FILE");
-  option("section", "picture of a section, then leave", "FILE");
-  parser.process(application);
-  if (parser.isSet("report-pdf"))
-    return make_pdf(parser.positionalArguments(), parser.value("report-pdf"));
+  WindowOptions options;
+  options.process(application);
+  if (options.isSet("manual")) {
+    std::fputs(options.manual_page().c_str(), stdout);
+    return 0;
+  }
+  if (options.isSet("report-pdf")) return make_pdf(options.files(), options.value("report-pdf"));
 
   Script script;
-  script.run = parser.isSet("run");
-  if (parser.isSet("iteration")) script.iteration = parser.value("iteration").toInt();
-  script.cut = parser.isSet("cut");
-  script.flat = parser.isSet("flat");
-  script.near = parser.value("near");
-  script.color = parser.value("color");
-  script.flow = parser.value("flow").split(',');
-  script.select = parser.value("select");
-  script.tab = parser.value("tab").toInt();
-  script.dialog = parser.value("dialog");
-  script.screenshot = parser.value("screenshot");
-  script.section = parser.value("section");
+  script.run = options.isSet("run");
+  if (options.isSet("iteration")) script.iteration = options.value("iteration").toInt();
+  script.cut = options.isSet("cut");
+  script.flat = options.isSet("flat");
+  script.near = options.value("near");
+  script.color = options.value("color");
+  script.flow = options.value("flow").split(',');
+  script.select = options.value("select");
+  script.tab = options.value("tab").toInt();
+  script.dialog = options.value("dialog");
+  script.screenshot = options.value("screenshot");
+  script.section = options.value("section");
 
   ui::speak(application, QSettings().value("language").toString());
-  ui::apply_theme(application, QSettings().value("dark", false).toBool() || parser.isSet("dark"));
+  ui::apply_theme(application, QSettings().value("dark", false).toBool() || options.isSet("dark"));
   ui::MainWindow window(window_services(
       QStandardPaths::writableLocation(QStandardPaths::CacheLocation).toStdString() + "/samples"));
-  if (const QStringList size = parser.value("size").split('x'); size.size() == 2)
+  if (const QStringList size = options.value("size").split('x'); size.size() == 2)
     window.resize(size[0].toInt(), size[1].toInt());
   window.show();
-  if (parser.isSet("leave")) {
+  if (options.isSet("leave")) {
     while (!window.windowHandle()->isExposed())
       QApplication::processEvents(QEventLoop::WaitForMoreEvents);
     QApplication::processEvents();
     return 0;
   }
-  window.open_files(parser.positionalArguments());
-  if (!script.any() && parser.positionalArguments().isEmpty()) window.tools().offer_recovery();
+  if (script.any())
+    window.open_files(options.files());
+  else
+    window.tools().offer_recovery(options.files());
   return script.any() ? play(window, script) : QApplication::exec();
 }

@@ -38,7 +38,10 @@ endif()
 if(TARGET lamella)
   set_target_properties(lamella PROPERTIES INSTALL_RPATH "${NGLIB_FOLDER}")
   install(TARGETS lamella)
-  packed(${CMAKE_CURRENT_LIST_DIR}/lamella.1 ${CMAKE_INSTALL_MANDIR}/man1)
+  set(manual ${CMAKE_BINARY_DIR}/lamella.1)
+  add_custom_command(OUTPUT ${manual}
+    COMMAND lamella --manual > ${manual} DEPENDS lamella VERBATIM)
+  packed(${manual} ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.desktop DESTINATION ${share}/applications)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.metainfo.xml DESTINATION ${share}/metainfo)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/org.lamella.Lamella.mime.xml DESTINATION ${share}/mime/packages

@@ -137,7 +137,7 @@ void MainWindow::make_body() {
   rows_->setStretchFactor(0, 1);
   rows_->setSizes({570, 230});
   columns_->setStretchFactor(1, 1);
-  columns_->setSizes({280, 820, 330});
+  columns_->setSizes({272, 832, 316});  // what a small screen leaves to the middle
   for (QSplitter* splitter : {rows_, columns_}) {
     splitter->setHandleWidth(8);
     splitter->setChildrenCollapsible(false);
@@ -164,7 +164,7 @@ void MainWindow::make_menus() {
   };
   constexpr Act line = Act::count;
   fill(tr("&File"),
-       {Act::open, Act::add, line, Act::save, Act::save_as, line, Act::export_mesh,
+       {Act::open, Act::add, Act::reload, line, Act::save, Act::save_as, line, Act::export_mesh,
         Act::save_report, Act::save_picture, Act::copy_command, line, Act::preferences, Act::quit});
   menuBar()->actions().front()->menu()->insertMenu((*actions_)[Act::add], tools_->recent_menu());
   fill(tr("&Edit"), {Act::undo, Act::redo, line, Act::remove});
@@ -254,6 +254,7 @@ void MainWindow::make_status_bar() {
   statusBar()->addWidget(counts_, 1);
   auto* unit = new QLabel(units::name());
   unit->setObjectName("unit");
+  unit->setContentsMargins(12, 5, 12, 5);
   unit->setToolTip(tr("The unit of all lengths; Preferences change it"));
   connect(&Units::get(), &Units::changed, unit, [unit] { unit->setText(units::name()); });
   statusBar()->addPermanentWidget(unit);
@@ -326,6 +327,10 @@ void MainWindow::connect_actions() {
   const Actions& act = *actions_;
   connect(act[Act::open], &QAction::triggered, this, [this] { ask_open(false); });
   connect(act[Act::add], &QAction::triggered, this, [this] { ask_open(true); });
+  connect(act[Act::reload], &QAction::triggered, this, [this] {
+    banner_->hide();
+    session_->reload();
+  });
   connect(act[Act::remove], &QAction::triggered, this,
           [this] { session_->remove_item(session_->item()); });
   connect(act[Act::save], &QAction::triggered, this, [this] { save(false); });
@@ -382,6 +387,7 @@ void MainWindow::update_actions() {
   const bool shown = !session_->empty();
   act[Act::open]->setEnabled(idle);
   act[Act::add]->setEnabled(idle && session_->has_bodies());
+  act[Act::reload]->setEnabled(idle && !session_->parts().empty());
   const bool parts = session_->has_bodies();
   // What is around the bodies goes with the domain.
   const Item item = session_->item();
@@ -401,6 +407,7 @@ void MainWindow::update_actions() {
                        (a == Act::flow_levels || flow->flow->components != 1));
   const bool of_solver = session_->study().flow && session_->study().flow->field;
   act[Act::solve_flow]->setText(of_solver ? tr("&Show the field") : tr("&Solve the flow"));
+  act[Act::solve_flow]->setIconText(of_solver ? tr("Show") : tr("Solve"));
   act[Act::solve_flow]->setToolTip(
       of_solver ? tr("Lay the field of the other solver on the mesh that is shown")
                 : tr("Solve the flow between gates and vents through the mesh that is shown"));
@@ -524,7 +531,7 @@ void MainWindow::report_run() {
   if (!outcome) return;
   if (!outcome->cancelled && !outcome->converged)
     banner_->show_message(Banner::Kind::info,
-                          tr("The mesh is valid but has not settled within %1 iterations.")
+                          tr("The mesh is valid but had not settled at iteration %1.")
                               .arg(session_->study().options.iterations),
                           tr("The report tells where layers are missing. More iterations, or a "
                              "smaller smallest size at blades, help."));

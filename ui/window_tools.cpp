@@ -11,11 +11,11 @@
 #include "ui/panels/journal_view.h"
 #include "ui/panels/palette.h"
 #include "ui/panels/preferences.h"
+#include "ui/panels/recovery_dialog.h"
 #include "ui/panels/shortcut_sheet.h"
 #include "ui/session/command_line.h"
 #include "ui/session/journal.h"
 #include "ui/session/recent_files.h"
-#include "ui/session/recovery.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
 #include "ui/views/model_view.h"
@@ -34,7 +34,7 @@ WindowTools::WindowTools(MainWindow& window) : QObject(&window), window_(window)
     connect(act[Act(a)], &QAction::triggered, journal_, [this, action = act[Act(a)]] {
       journal_->add(tr("Action: %1").arg(action->text().remove('&')));
     });
-  connect(act[Act::journal], &QAction::triggered, this, &WindowTools::show_journal);
+  connect(act[Act::journal], &QAction::triggered, this, [this] { show_journal(&window_); });
   connect(recent_, &QMenu::aboutToShow, this, &WindowTools::fill_recent);
   connect(&window.session(), &Session::saved, this,
           [](const QString& file) { remember_file(file); });
@@ -78,8 +78,8 @@ void WindowTools::copy_command() {
   window_.banner().show_message(Banner::Kind::done, tr("Copied"), text);
 }
 
-void WindowTools::show_journal() {
-  auto* view = new JournalView(journal_->left_behind(), journal_->text(), &window_);
+void WindowTools::show_journal(QWidget* parent) {
+  auto* view = new JournalView(journal_->left_behind(), journal_->text(), parent);
   view->setAttribute(Qt::WA_DeleteOnClose);
   view->show();
 }
@@ -91,34 +91,36 @@ void WindowTools::fill_recent() {
   if (recent_->isEmpty()) recent_->addAction(tr("Nothing yet"))->setEnabled(false);
 }
 
-void WindowTools::offer_recovery() {
+void WindowTools::offer_recovery(const QStringList& files) {
   const std::vector<Recovery::Left> left = recovery_->left_behind();
-  if (left.empty()) return;
-  const Recovery::Left last = left.back();
-  const QString name = last.made_for.empty()
-                           ? tr("a study that was never saved")
-                           : QString::fromStdString(last.made_for.filename().string());
-  window_.banner().show_message(
-      Banner::Kind::info, tr("Lamella ended without saving %1.").arg(name),
-      tr("Its last state was kept."),
-      {{tr("Restore"),
-        [this, last] {
-          Session& session = window_.session();
-          session.open_study(last.file, last.made_for);
-          // It goes once it is open here, where it is kept anew; not when it could not be opened.
-          connect(&session, &Session::study_opened, this, [this, last](const QString& opened) {
-            if (opened != QString::fromStdString(last.file.string())) return;
-            recovery_->keep();
-            Recovery::discard(last);
-            // The journals tell of all that was left.
-            if (recovery_->left_behind().empty()) journal_->discard_left();
-          });
-        }},
-       {tr("What was done"), [this] { show_journal(); }},
-       {tr("Discard"), [this, left] {
-          for (const Recovery::Left& one : left) Recovery::discard(one);
-          journal_->discard_left();
-        }}});
+  if (left.empty()) return window_.open_files(files);
+  auto* dialog = new RecoveryDialog(left, &window_);
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  connect(dialog, &RecoveryDialog::recover_asked, this, &WindowTools::recover);
+  connect(dialog, &RecoveryDialog::discard_asked, this, [this](const Recovery::Left& one) {
+    Recovery::discard(one);
+    forget_journals();
+  });
+  connect(dialog, &RecoveryDialog::journal_asked, dialog, [this, dialog] { show_journal(dialog); });
+  connect(dialog, &QDialog::rejected, this, [this, files] { window_.open_files(files); });
+  dialog->open();
+}
+
+void WindowTools::recover(const Recovery::Left& left) {
+  Session& session = window_.session();
+  // Where it could not be opened it is offered again.
+  connect(&session, &Session::study_opened, this, [this, left](const QString& opened) {
+    if (opened != QString::fromStdString(left.file.string())) return;
+    recovery_->keep();
+    Recovery::discard(left);
+    forget_journals();
+  });
+  session.open_study(left.file, left.made_for);
+}
+
+void WindowTools::forget_journals() {
+  // They tell of all that was left.
+  if (recovery_->left_behind().empty()) journal_->discard_left();
 }
 
 }  // namespace lamella::ui

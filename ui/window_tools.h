@@ -2,6 +2,8 @@
 
 #include <QObject>
 
+#include "ui/session/recovery.h"
+
 class QMenu;
 
 namespace lamella::ui {
@@ -9,7 +11,6 @@ namespace lamella::ui {
 class Journal;
 class MainWindow;
 class Palette;
-class Recovery;
 
 /// What a window has beside its work: the search for actions, the sheet of keys, preferences,
 /// recent files, the command line of the study, and what a crash has left.
@@ -22,13 +23,17 @@ class WindowTools : public QObject {
   /// Fills itself whenever it is opened.
   QMenu* recent_menu() { return recent_; }
   const Journal& journal() const { return *journal_; }
-  /// Offers what programs that are gone have left unsaved.
-  void offer_recovery();
+  /// Asks what is to become of what programs that are gone have left unsaved, then opens `files`
+  /// unless something was recovered.
+  void offer_recovery(const QStringList& files);
 
  private:
   void copy_command();
   void fill_recent();
-  void show_journal();
+  void show_journal(QWidget* parent);
+  /// Opens it, and lets go of what was left once it is open here.
+  void recover(const Recovery::Left& left);
+  void forget_journals();
 
   MainWindow& window_;
   QMenu* recent_;

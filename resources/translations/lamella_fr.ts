@@ -7,6 +7,22 @@
         <source>that of the system</source>
         <translation>celle du système</translation>
     </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Annuler</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Fermer</translation>
+    </message>
+    <message>
+        <source>Discard</source>
+        <translation>Ne pas enregistrer</translation>
+    </message>
+    <message>
+        <source>Save</source>
+        <translation>Enregistrer</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Actions</name>
@@ -426,6 +442,14 @@
         <source>Open a study, a CAD file or an STL file</source>
         <translation>Ouvrir une étude, un fichier CAO ou STL</translation>
     </message>
+    <message>
+        <source>Re&amp;load the parts</source>
+        <translation>Re&amp;charger les pièces</translation>
+    </message>
+    <message>
+        <source>Read the files of the parts again; settings, groups and sizes stay</source>
+        <translation>Relire les fichiers des pièces ; réglages, groupes et tailles restent</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Banner</name>
@@ -785,6 +809,10 @@ Il faut dire jusqu&apos;à quelle largeur : voir α2</translation>
     <message>
         <source>worst quality</source>
         <translation>pire qualité</translation>
+    </message>
+    <message>
+        <source>A project keeps the last mesh alone</source>
+        <translation>Un projet ne garde que le dernier maillage</translation>
     </message>
 </context>
 <context>
@@ -1515,6 +1543,10 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <source>Levels</source>
         <translation>Niveaux</translation>
     </message>
+    <message>
+        <source>Flow</source>
+        <translation>Écoulement</translation>
+    </message>
 </context>
 <context>
     <name>lamella::ui::Forecaster</name>
@@ -2072,10 +2104,6 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <translation>   encore %1</translation>
     </message>
     <message>
-        <source>The mesh is valid but has not settled within %1 iterations.</source>
-        <translation>Le maillage est valide mais ne s&apos;est pas stabilisé en %1 itérations.</translation>
-    </message>
-    <message>
         <source>The report tells where layers are missing. More iterations, or a smaller smallest size at blades, help.</source>
         <translation>Le rapport dit où manquent des couches. Davantage d&apos;itérations, ou une taille minimale plus petite aux lames, aident.</translation>
     </message>
@@ -2316,6 +2344,18 @@ Réalisé avec %1.</translation>
     <message>
         <source>Width in pixels</source>
         <translation>Largeur en pixels</translation>
+    </message>
+    <message>
+        <source>Show</source>
+        <translation>Montrer</translation>
+    </message>
+    <message>
+        <source>Solve</source>
+        <translation>Résoudre</translation>
+    </message>
+    <message>
+        <source>The mesh is valid but had not settled at iteration %1.</source>
+        <translation>Le maillage est valide mais n&apos;était pas stabilisé à l&apos;itération %1.</translation>
     </message>
 </context>
 <context>
@@ -2838,6 +2878,97 @@ Les barres croissent comme le logarithme du nombre</translation>
     </message>
 </context>
 <context>
+    <name>lamella::ui::RecoveryDialog</name>
+    <message>
+        <source>1 body</source>
+        <translation>1 corps</translation>
+    </message>
+    <message>
+        <source>%1 bodies</source>
+        <translation>%1 corps</translation>
+    </message>
+    <message>
+        <source>1 group</source>
+        <translation>1 groupe</translation>
+    </message>
+    <message>
+        <source>%1 groups</source>
+        <translation>%1 groupes</translation>
+    </message>
+    <message>
+        <source>1 size</source>
+        <translation>1 taille</translation>
+    </message>
+    <message>
+        <source>%1 sizes</source>
+        <translation>%1 tailles</translation>
+    </message>
+    <message>
+        <source>1 cut</source>
+        <translation>1 coupe</translation>
+    </message>
+    <message>
+        <source>%1 cuts</source>
+        <translation>%1 coupes</translation>
+    </message>
+    <message>
+        <source>an empty study</source>
+        <translation>une étude vide</translation>
+    </message>
+    <message>
+        <source>Recovery</source>
+        <translation>Récupération</translation>
+    </message>
+    <message>
+        <source>Lamella ended without saving your work.</source>
+        <translation>Lamella s&apos;est terminé sans enregistrer votre travail.</translation>
+    </message>
+    <message>
+        <source>The study was kept with its last edit. Meshes since the last save are not in it: run it again.</source>
+        <translation>L&apos;étude a été gardée avec sa dernière modification, mais sans les maillages faits depuis le dernier enregistrement : relancez-la.</translation>
+    </message>
+    <message>
+        <source>Studies that were kept</source>
+        <translation>Études gardées</translation>
+    </message>
+    <message>
+        <source>never saved</source>
+        <translation>jamais enregistré</translation>
+    </message>
+    <message>
+        <source>&amp;Recover</source>
+        <translation>&amp;Récupérer</translation>
+    </message>
+    <message>
+        <source>&amp;Discard</source>
+        <translation>&amp;Supprimer</translation>
+    </message>
+    <message>
+        <source>Decide &amp;later</source>
+        <translation>Décider plus &amp;tard</translation>
+    </message>
+    <message>
+        <source>&amp;What was done</source>
+        <translation>Ce qui a été &amp;fait</translation>
+    </message>
+    <message>
+        <source>Study</source>
+        <translation>Étude</translation>
+    </message>
+    <message>
+        <source>Project</source>
+        <translation>Projet</translation>
+    </message>
+    <message>
+        <source>Last edit</source>
+        <translation>Dernière modification</translation>
+    </message>
+    <message>
+        <source>Kept</source>
+        <translation>Gardé</translation>
+    </message>
+</context>
+<context>
     <name>lamella::ui::ReportPanel</name>
     <message>
         <source>The report of a finished run appears here.</source>
@@ -2945,7 +3076,7 @@ Les barres croissent comme le logarithme du nombre</translation>
     </message>
     <message>
         <source>Volume off the CAD&apos;s</source>
-        <translation>Écart de volume à la CAO</translation>
+        <translation>Écart de volume</translation>
     </message>
     <message>
         <source>volume %1, first mesh by %2</source>
@@ -3109,6 +3240,30 @@ Les barres croissent comme le logarithme du nombre</translation>
     <message>
         <source>%1: %2, %L3 triangles on %4 faces, volume %5</source>
         <translation>%1 : %2, %L3 triangles sur %4 faces, volume %5</translation>
+    </message>
+    <message>
+        <source>Reload the parts</source>
+        <translation>Recharger les pièces</translation>
+    </message>
+    <message>
+        <source>Reading the files of the parts again</source>
+        <translation>Relecture des fichiers des pièces</translation>
+    </message>
+    <message>
+        <source>The parts are as their files have them.</source>
+        <translation>Les pièces sont conformes à leurs fichiers.</translation>
+    </message>
+    <message>
+        <source>The part was read again.</source>
+        <translation>La pièce a été relue.</translation>
+    </message>
+    <message>
+        <source>%1 parts were read again.</source>
+        <translation>%1 pièces ont été relues.</translation>
+    </message>
+    <message>
+        <source>Its settings, groups and sizes are as they were.</source>
+        <translation>Réglages, groupes et tailles sont inchangés.</translation>
     </message>
 </context>
 <context>
@@ -3455,7 +3610,7 @@ Les propriétés du maillage ont ses réglages.</translation>
     </message>
     <message>
         <source>is</source>
-        <translation>obtenu</translation>
+        <translation>réel</translation>
     </message>
     <message>
         <source>Show %1</source>
@@ -3517,7 +3672,7 @@ Les propriétés du maillage ont ses réglages.</translation>
     <name>lamella::ui::ViewBar</name>
     <message>
         <source>Color by</source>
-        <translation>Couleur selon</translation>
+        <translation>Couleur</translation>
     </message>
     <message>
         <source>Body</source>
@@ -3537,7 +3692,7 @@ Les propriétés du maillage ont ses réglages.</translation>
     </message>
     <message>
         <source>Filling ratio</source>
-        <translation>Taux de remplissage</translation>
+        <translation>Remplissage</translation>
     </message>
     <message>
         <source>Body whose filling is shown</source>
@@ -3569,7 +3724,7 @@ Les propriétés du maillage ont ses réglages.</translation>
     </message>
     <message>
         <source>Flow indicator</source>
-        <translation>Indicateur d&apos;écoulement</translation>
+        <translation>Indicateur</translation>
     </message>
     <message>
         <source>Size asked</source>
@@ -3682,30 +3837,6 @@ Les propriétés du maillage ont ses réglages.</translation>
     <message>
         <source>Nothing yet</source>
         <translation>Rien encore</translation>
-    </message>
-    <message>
-        <source>a study that was never saved</source>
-        <translation>une étude jamais enregistrée</translation>
-    </message>
-    <message>
-        <source>Lamella ended without saving %1.</source>
-        <translation>Lamella s&apos;est terminé sans enregistrer %1.</translation>
-    </message>
-    <message>
-        <source>Its last state was kept.</source>
-        <translation>Son dernier état a été gardé.</translation>
-    </message>
-    <message>
-        <source>Restore</source>
-        <translation>Restaurer</translation>
-    </message>
-    <message>
-        <source>What was done</source>
-        <translation>Ce qui a été fait</translation>
-    </message>
-    <message>
-        <source>Discard</source>
-        <translation>Abandonner</translation>
     </message>
 </context>
 <context>

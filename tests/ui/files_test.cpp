@@ -3,6 +3,7 @@
 #include <QLineEdit>
 #include <QPushButton>
 #include <QSettings>
+#include <QSlider>
 #include <QTextBrowser>
 
 #include "tests/ui/window_fixture.h"
@@ -18,7 +19,8 @@ namespace {
 /// Files that leave the window, and what it shows of one that comes back.
 class WindowFiles : public WindowFixture {
  protected:
-  WindowFiles() {
+  explicit WindowFiles(Services (*change)(Services) = [](Services made) { return made; })
+      : WindowFixture(change) {
     QSettings().remove("export");
     QSettings().remove("report");
   }
@@ -145,6 +147,37 @@ TEST_F(WindowFiles, AnOpenedProjectShowsItsReportWithoutARun) {
   session().save_report(folder_ / "again.html");
   ASSERT_TRUE(wait_idle());
   EXPECT_NE(bytes("again.html").find("plate.step"), std::string::npos);
+}
+
+/// Files keep the mesh that was shown last.
+class KeptMesh : public WindowFiles {
+ protected:
+  static inline std::shared_ptr<const MeshState> kept;
+  KeptMesh()
+      : WindowFiles([](Services made) {
+          made.read_mesh = [](const std::filesystem::path&) -> Result<MeshState> { return *kept; };
+          return made;
+        }) {}
+};
+
+TEST_F(KeptMesh, TheSliderOfAnOpenedProjectStandsAtTheMeshThatIsShown) {
+  open_part("plate");
+  run();
+  kept = session().shown_state();
+  auto* slider = find<QSlider>("iteration_slider");
+  const int last = static_cast<int>(session().outcome()->records.size()) - 1;
+  ASSERT_GT(last, 0);
+  ASSERT_EQ(slider->value(), last);
+  session().save(folder_ / "p.lamella");
+  ASSERT_TRUE(wait_idle());
+  open_part("t_junction");
+  EXPECT_EQ(slider->value(), 0);
+  window_.open_files({QString::fromStdString((folder_ / "p.lamella").string())});
+  ASSERT_TRUE(wait_idle());
+  ASSERT_EQ(session().iterations().size(), 1u);
+  EXPECT_EQ(slider->maximum(), last);
+  EXPECT_EQ(slider->value(), last);
+  EXPECT_FALSE(slider->isEnabled()) << "there is no other mesh";
 }
 
 }  // namespace

@@ -67,6 +67,13 @@ TEST(FirstUse, FromAnAssemblyToAnExportedMeshAndBack) {
     QTest::qWait(100);
     return window.view().picture();
   };
+  // For a person to judge, where LAMELLA_PICTURES names a folder.
+  const auto keep_picture = [](MainWindow& window, const char* name) {
+    const QString to = qEnvironmentVariable("LAMELLA_PICTURES");
+    if (to.isEmpty()) return;
+    QTest::qWait(200);
+    EXPECT_TRUE(window.grab().save(to + "/first-use-" + name + ".png"));
+  };
   {
     MainWindow window(window_services(folder.path()));
     window.show();
@@ -112,6 +119,7 @@ TEST(FirstUse, FromAnAssemblyToAnExportedMeshAndBack) {
     act[Act::correct_near]->setChecked(true);
     QTest::mouseClick(view, Qt::LeftButton, {}, view->rect().center());
     ASSERT_EQ(session.study().sizing.size(), 1u);
+    keep_picture(window, "correction");
     // What it costs is told before the run.
     ASSERT_TRUE(
         QTest::qWaitFor([&] { return window.forecaster().bodies().has_value(); }, patience));
@@ -128,8 +136,10 @@ TEST(FirstUse, FromAnAssemblyToAnExportedMeshAndBack) {
     const auto& groups = state->mesh.groups;
     EXPECT_NE(std::find(groups.begin(), groups.end(), "gate"), groups.end());
 
+    keep_picture(window, "run");
     act[Act::section]->setChecked(true);
     QTest::qWait(50);
+    keep_picture(window, "section");
     EXPECT_LT(window.view().scene()->shown_elements(), elements);
 
     session.export_mesh(folder / "walk.msh");

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <QProcess>
+#include <QRegularExpression>
 #include <QSignalSpy>
 #include <QSpinBox>
 #include <QTest>
@@ -145,6 +147,35 @@ TEST_F(RealRunTest, BatchMakesTheSameMeshBitForBit) {
       << read_file(folder_ / "told").value();
   EXPECT_TRUE(read_file(folder_ / "batch.msh").value() ==
               read_file(folder_ / "window.msh").value());
+}
+
+/// What the window's program prints without a display.
+QString printed(const QString& option) {
+  QProcess program;
+  QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"})
+    environment.remove(name);
+  program.setProcessEnvironment(environment);
+  program.start(LAMELLA_BIN_DIR "/lamella", {option});
+  EXPECT_TRUE(program.waitForFinished(patience));
+  EXPECT_EQ(program.exitCode(), 0) << program.readAllStandardError().toStdString();
+  return QString::fromUtf8(program.readAllStandardOutput());
+}
+
+TEST(Program, ItsManualPageSaysWhatItsHelpSays) {
+  const QString help = printed("--help");
+  const QString page = printed("--manual").replace("\\-", "-");
+  EXPECT_TRUE(page.startsWith(".TH LAMELLA 1"));
+  int options = 0;
+  static const QRegularExpression option("--[a-z-]+");
+  for (auto it = option.globalMatch(help); it.hasNext();) {
+    const QString name = it.next().captured();
+    if (name == "--help-all") continue;  // of Qt, about Qt
+    ++options;
+    EXPECT_TRUE(page.contains(name)) << name.toStdString();
+  }
+  EXPECT_GE(options, 3);
+  EXPECT_FALSE(page.contains("--screenshot")) << "it is for our own pictures";
 }
 
 }  // namespace

@@ -3,9 +3,13 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QFileInfo>
+#include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QLocale>
 #include <QSpinBox>
+#include <QStandardPaths>
 #include <QTreeView>
 #include <cmath>
 
@@ -18,10 +22,13 @@
 #include "ui/models/study_model.h"
 #include "ui/panels/banner.h"
 #include "ui/panels/convergence_panel.h"
+#include "ui/panels/journal_view.h"
 #include "ui/panels/palette.h"
 #include "ui/panels/quality_panel.h"
+#include "ui/panels/recovery_dialog.h"
 #include "ui/session/command_line.h"
 #include "ui/session/recovery.h"
+#include "ui/window_tools.h"
 
 namespace lamella::ui {
 namespace {
@@ -311,6 +318,110 @@ TEST_F(StudyItemsTest, WhatIsUnsavedSurvivesACrash) {
   session().save(folder_ / "s.lamella");
   ASSERT_TRUE(wait_idle());
   EXPECT_FALSE(kept());
+}
+
+/// A home for the program's data that no other run of these tests looks into.
+class OwnHome {
+ protected:
+  OwnHome() { qputenv("HOME", QByteArray::fromStdString(home_.path().string())); }
+  ~OwnHome() { qputenv("HOME", before_); }
+
+ private:
+  QByteArray before_ = qgetenv("HOME");
+  test::TemporaryFolder home_;
+};
+
+/// Beside the program's data: studies that programs which are gone have left.
+class RecoveryTest : OwnHome, public StudyItemsTest {
+ protected:
+  void leave(const char* pid, int layers, const std::string& target) {
+    Study study = session().study();
+    study.name = "of " + std::string(pid);
+    study.bodies[0].layers = layers;
+    ASSERT_TRUE(write_study(study, kept_ / (std::string(pid) + ".lamella")));
+    ASSERT_TRUE(write_file(kept_ / (std::string(pid) + ".target"), target));
+    ASSERT_TRUE(write_file(kept_ / (std::string(pid) + ".journal"), "12:00  Edit: Layers\n"));
+  }
+  bool left(const char* pid) const {
+    return std::filesystem::exists(kept_ / (std::string(pid) + ".lamella"));
+  }
+  /// The dialog, after what it does.
+  RecoveryDialog* offered(const QStringList& files = {}) {
+    window_.tools().offer_recovery(files);
+    QTest::qWait(30);
+    return window_.findChild<RecoveryDialog*>();
+  }
+  void expect_closed() {
+    EXPECT_TRUE(QTest::qWaitFor([this] { return !window_.findChild<RecoveryDialog*>(); }));
+  }
+
+  std::filesystem::path kept_ =
+      QStandardPaths::writableLocation(QStandardPaths::AppDataLocation).toStdString() + "/recovery";
+};
+
+TEST_F(RecoveryTest, ADialogTellsWhatIsRecoveredAndEnterRecoversIt) {
+  EXPECT_EQ(offered(), nullptr) << "nothing was left";
+  const std::string target = (folder_ / "mine.lamella").string();
+  leave("999999999", 9, target);
+  RecoveryDialog* dialog = offered();
+  ASSERT_NE(dialog, nullptr);
+  const QString details = dialog->findChild<QLabel*>("recovery_details")->text();
+  const QString written = QLocale().toString(
+      QFileInfo(QString::fromStdString((kept_ / "999999999.lamella").string())).lastModified(),
+      QLocale::ShortFormat);
+  for (const QString& told : {QString::fromStdString(target), written, QString("of 999999999"),
+                              QString("1 body (plate)")})
+    EXPECT_TRUE(details.contains(told)) << told.toStdString();
+  if (const QString to = qEnvironmentVariable("LAMELLA_PICTURES"); !to.isEmpty())
+    dialog->grab().save(to + "/recovery.png");
+  QTest::keyClick(dialog, Qt::Key_Return);
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(session().body(0).layers, 9);
+  EXPECT_EQ(session().file().string(), target);
+  EXPECT_TRUE(session().modified());
+  EXPECT_FALSE(left("999999999")) << "it is kept anew, as that of this window";
+  EXPECT_FALSE(std::filesystem::exists(kept_ / "999999999.journal"));
+  expect_closed();
+}
+
+TEST_F(RecoveryTest, EscapeLeavesItToTheNextStartAndOpensWhatWasAskedFor) {
+  leave("999999999", 9, "");
+  ASSERT_TRUE(write_sample("wedge", folder_ / "wedge.step"));
+  RecoveryDialog* dialog = offered({QString::fromStdString((folder_ / "wedge.step").string())});
+  ASSERT_NE(dialog, nullptr);
+  EXPECT_EQ(session().body(0).name, "plate") << "not before it is decided";
+  QTest::keyClick(dialog, Qt::Key_Escape);
+  ASSERT_TRUE(wait_idle());
+  EXPECT_EQ(session().body(0).name, "wedge");
+  EXPECT_TRUE(left("999999999"));
+  expect_closed();
+}
+
+TEST_F(RecoveryTest, OfSeveralOneIsChosenAndOthersAreDiscardedByKeys) {
+  leave("999999998", 8, "");
+  QTest::qWait(20);
+  leave("999999999", 9, "");
+  RecoveryDialog* dialog = offered();
+  ASSERT_NE(dialog, nullptr);
+  auto* list = dialog->findChild<QListWidget*>("recovery_list");
+  ASSERT_EQ(list->count(), 2);
+  EXPECT_TRUE(dialog->findChild<QLabel*>("recovery_details")->text().contains("of 999999999"))
+      << "the latest is chosen";
+  QTest::keyClick(dialog, Qt::Key_W, Qt::AltModifier);
+  EXPECT_TRUE(QTest::qWaitFor([&] { return dialog->findChild<JournalView*>() != nullptr; }));
+  dialog->findChild<JournalView*>()->close();
+  dialog->activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(dialog, patience));
+  QTest::keyClick(dialog, Qt::Key_D, Qt::AltModifier);
+  // A button that a key presses stays down for a moment.
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !left("999999999"); }));
+  EXPECT_TRUE(left("999999998"));
+  EXPECT_TRUE(std::filesystem::exists(kept_ / "999999998.journal"));
+  ASSERT_TRUE(dialog->isVisible());
+  QTest::keyClick(dialog, Qt::Key_D, Qt::AltModifier);
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !left("999999998"); }));
+  EXPECT_FALSE(std::filesystem::exists(kept_ / "999999998.journal"));
+  expect_closed();
 }
 
 TEST_F(StudyItemsTest, ActionsAreFoundByTheirWords) {

@@ -29,6 +29,8 @@ Actions::Actions(QObject* parent) : QObject(parent) {
        QT_TR_NOOP("Open a study, a CAD file or an STL file")},
       {Act::add, QT_TR_NOOP("&Add body…"), "add", "Ctrl+Shift+O",
        QT_TR_NOOP("Add the bodies of another file")},
+      {Act::reload, QT_TR_NOOP("Re&load the parts"), "", "Ctrl+R",
+       QT_TR_NOOP("Read the files of the parts again; settings, groups and sizes stay")},
       {Act::save, QT_TR_NOOP("&Save study"), "save", "Ctrl+S",
        QT_TR_NOOP("Save the study, its mesh and its report in one file")},
       {Act::save_as, QT_TR_NOOP("Save study &as…"), "", "Ctrl+Shift+S",

@@ -10,6 +10,7 @@ namespace lamella::ui {
 enum class Act {
   open,
   add,
+  reload,
   save,
   save_as,
   remove,

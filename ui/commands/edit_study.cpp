@@ -36,4 +36,11 @@ void RemovePart::undo() {
 
 void RemovePart::redo() { taken_ = session_.take_part(index_, after_); }
 
+ReloadParts::ReloadParts(Session& session, Session::ReadState after)
+    : QUndoCommand(Session::tr("Reload the parts")), session_(session), other_(std::move(after)) {}
+
+void ReloadParts::undo() { other_ = session_.exchange_parts(std::move(other_)); }
+
+void ReloadParts::redo() { other_ = session_.exchange_parts(std::move(other_)); }
+
 }  // namespace lamella::ui

@@ -43,4 +43,16 @@ class RemovePart : public QUndoCommand {
   std::optional<Session::TakenPart> taken_;  // while it is out
 };
 
+/// Puts parts that were read again in the place of those before, and back.
+class ReloadParts : public QUndoCommand {
+ public:
+  ReloadParts(Session& session, Session::ReadState after);
+  void undo() override;
+  void redo() override;
+
+ private:
+  Session& session_;
+  Session::ReadState other_;
+};
+
 }  // namespace lamella::ui

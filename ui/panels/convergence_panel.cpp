@@ -171,8 +171,6 @@ void ConvergencePanel::follow_iterations() {
   error_->set_series({error});
   error_->setVisible(domain);
   show_layers(mean, low);
-  const QSignalBlocker block(slider_);
-  slider_->setRange(0, std::max(0, static_cast<int>(session_.iterations().size()) - 1));
   follow_shown();
 }
 
@@ -211,8 +209,9 @@ void ConvergencePanel::show_layers(Series mean, Series low) {
 void ConvergencePanel::follow_shown() {
   const int shown = session_.shown();
   const int last = static_cast<int>(session_.iterations().size()) - 1;
+  const std::vector<IterationRecord> all = records();
   int marked = shown;
-  if (const auto all = records(); shown >= 0 && all.size() != session_.iterations().size()) {
+  if (shown >= 0 && all.size() != session_.iterations().size()) {
     const int iteration = session_.iterations()[static_cast<std::size_t>(shown)].record.iteration;
     const auto at = std::find_if(
         all.begin(), all.end(), [&](const IterationRecord& r) { return r.iteration == iteration; });
@@ -220,14 +219,17 @@ void ConvergencePanel::follow_shown() {
   }
   for (Plot* plot : all_plots()) plot->set_marked(marked);
   const QSignalBlocker block(slider_);
+  slider_->setRange(0, std::max(0, static_cast<int>(all.size()) - 1));
   slider_->setEnabled(last > 0);
+  slider_->setToolTip(last == 0 && all.size() > 1 ? tr("A project keeps the last mesh alone")
+                                                  : QString());
   back_->setEnabled(shown > 0);
   forward_->setEnabled(shown < last);
   if (shown < 0) {
     position_->setText(tr("no mesh yet"));
     return;
   }
-  slider_->setValue(shown);
+  slider_->setValue(marked);
   const IterationRecord& record = session_.iterations()[shown].record;
   QString text = !session_.has_bodies()  ? tr("opened mesh")
                  : record.iteration == 0 ? tr("0: first mesh")

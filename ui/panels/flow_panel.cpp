@@ -4,6 +4,7 @@
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSlider>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -51,6 +52,18 @@ QString method_title(FlowMethod method) {
   return {};
 }
 
+/// The widget where there may be too little height for it.
+QScrollArea* scrolled_down(QWidget* widget, const QString& name) {
+  auto* area = new QScrollArea;
+  area->setWidget(widget);
+  widget->setAutoFillBackground(false);  // as setWidget made it
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->setAccessibleName(name);
+  return area;
+}
+
 QString cell(const QString& text, bool number) {
   return QString("<td align='%1' style='padding: 2px 14px 2px 0'>%2</td>")
       .arg(number ? "right" : "left", text);
@@ -61,9 +74,12 @@ QString cell(const QString& text, bool number) {
 FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
     : QWidget(parent), session_(session) {
   auto* layout = new QHBoxLayout(this);
-  layout->setContentsMargins(14, 8, 8, 8);
-  layout->setSpacing(18);
-  layout->addWidget(make_settings());
+  layout->setContentsMargins(12, 8, 8, 8);
+  layout->setSpacing(14);
+  // Each part scrolls by itself: the others stay in sight.
+  QScrollArea* settings = scrolled_down(make_settings(), tr("Correct the mesh by the flow"));
+  settings->setMaximumWidth(324);
+  layout->addWidget(settings, 1);
   auto* right = new QVBoxLayout;
   right->setSpacing(6);
   auto* tools = new QHBoxLayout;
@@ -88,8 +104,8 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
   found_->setWordWrap(true);
   found_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   auto* results = new QHBoxLayout;
-  results->setSpacing(18);
-  results->addWidget(found_, 1);
+  results->setSpacing(12);
+  results->addWidget(scrolled_down(found_, tr("Flow")), 1);
   residuals_ = new Plot(tr("Residual"));
   residuals_->setObjectName("residual_plot");
   residuals_->set_logarithmic(true);
@@ -112,9 +128,8 @@ FlowPanel::FlowPanel(Session& session, Actions& actions, QWidget* parent)
 
 QWidget* FlowPanel::make_settings() {
   auto* box = new QWidget;
-  box->setFixedWidth(310);
   auto* layout = new QVBoxLayout(box);
-  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setContentsMargins(0, 0, 6, 0);
   layout->setSpacing(4);
   correct_ = new QCheckBox(tr("Correct the mesh by the flow"));
   correct_->setObjectName("flow_correct");

@@ -32,6 +32,8 @@ class FlowPanel : public QWidget {
   FlowPanel(Session& session, Actions& actions, QWidget* parent = nullptr);
   /// Of the correction at the shown mesh; nothing while it is not known.
   std::optional<FlowPreview> preview() const;
+  /// Whether the preview is on its way.
+  bool busy() const { return wait_.isActive() || worker_.busy(); }
 
  Q_SIGNALS:
   /// The user wants to choose the result of another solver.

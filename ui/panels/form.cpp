@@ -105,7 +105,7 @@ PointBox::PointBox(const char* name, const QString& tip, bool direction, QWidget
   setToolTip(tip);
   auto* row = new QHBoxLayout(this);
   row->setContentsMargins(0, 0, 0, 0);
-  row->setSpacing(4);
+  row->setSpacing(2);
   const char* const axes[] = {"x", "y", "z"};
   for (std::size_t k = 0; k < 3; ++k) {
     auto* box = new CoordinateBox(direction);

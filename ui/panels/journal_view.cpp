@@ -18,7 +18,6 @@ JournalView::JournalView(const QString& left, const QString& now, QWidget* paren
     auto* text = new QPlainTextEdit(lines.isEmpty() ? tr("Nothing yet") : lines);
     text->setAccessibleName(title);
     text->setReadOnly(true);
-    text->setLineWrapMode(QPlainTextEdit::NoWrap);
     layout->addWidget(text);
     text->moveCursor(QTextCursor::End);
   };

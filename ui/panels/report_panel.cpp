@@ -14,7 +14,7 @@ constexpr std::size_t most_places = 40;
 
 /// Numbers stay whole; titles of columns may take two lines.
 QString cell(const QString& text) {
-  return "<td align='right' style='padding: 4px 14px 4px 0; white-space: nowrap'>" + text + "</td>";
+  return "<td align='right' style='padding: 4px 10px 4px 0; white-space: nowrap'>" + text + "</td>";
 }
 
 }  // namespace
@@ -24,6 +24,7 @@ ReportPanel::ReportPanel(Session& session, QWidget* parent)
   setAccessibleName(tr("Report"));
   setFrameShape(QFrame::NoFrame);
   document()->setDocumentMargin(14);
+  setWordWrapMode(QTextOption::WordWrap);
   setOpenLinks(false);
   connect(this, &QTextBrowser::anchorClicked, this, &ReportPanel::jump);
   connect(&Units::get(), &Units::changed, this, &ReportPanel::refresh);
@@ -58,7 +59,7 @@ void ReportPanel::refresh() {
                            tr("Volume off the CAD's"),
                            tr("Distance to surface")};
   for (int k = 0; k < titles.size(); ++k)
-    html += QString("<td align='%1' valign='bottom' style='padding: 4px 14px 0 0'>%2</td>")
+    html += QString("<td align='%1' valign='bottom' style='padding: 4px 10px 0 0'>%2</td>")
                 .arg(k == 0 ? "left" : "right", titles[k]);
   html += "</tr>";
   // Fuzzy borders have no faces that could be off.
@@ -66,8 +67,11 @@ void ReportPanel::refresh() {
   for (const BodyOutcome& body : outcome->bodies) {
     const double off =
         body.cad_volume > 0 ? (body.mesh_volume - body.cad_volume) / body.cad_volume * 100 : 0;
-    html += "<tr><td style='padding: 4px 14px 4px 0'><b>" +
-            QString::fromStdString(body.name).toHtmlEscaped() + "</b></td>";
+    // The whole name stands in the study.
+    const QString name =
+        fontMetrics().elidedText(QString::fromStdString(body.name), Qt::ElideMiddle, 130);
+    html += "<tr><td style='padding: 4px 10px 4px 0; white-space: nowrap'><b>" +
+            name.toHtmlEscaped() + "</b></td>";
     html += cell(QString::number(body.layers_asked));
     html += cell(QString::number(body.layers.mean, 'f', 2));
     html += cell(QString::number(body.layers.p5, 'f', 2));

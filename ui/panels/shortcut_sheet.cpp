@@ -12,7 +12,7 @@ ShortcutSheet::ShortcutSheet(const std::vector<QAction*>& actions, QWidget* pare
   setWindowTitle(tr("Keyboard shortcuts"));
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(20, 16, 20, 20);
-  grid->setHorizontalSpacing(14);
+  grid->setHorizontalSpacing(10);
   grid->setVerticalSpacing(5);
   std::vector<std::pair<QString, QString>> rows;
   for (const QAction* action : actions)
@@ -29,16 +29,18 @@ ShortcutSheet::ShortcutSheet(const std::vector<QAction*>& actions, QWidget* pare
       {tr("arrows, +, -"), tr("turn the view and zoom; with Shift shift it")},
       {tr("F2"), tr("rename in the study")}};
   rows.insert(rows.end(), std::begin(mouse), std::end(mouse));
-  const int half = static_cast<int>(rows.size() + 1) / 2;
+  // In as many columns as leave it lower than a small screen.
+  constexpr int columns = 3;
+  const int high = (static_cast<int>(rows.size()) + columns - 1) / columns;
   for (int k = 0; k < static_cast<int>(rows.size()); ++k) {
     auto* keys = styled_label(rows[static_cast<std::size_t>(k)].first, "keys");
     keys->setAlignment(Qt::AlignCenter);
-    const int column = k < half ? 0 : 3;
-    grid->addWidget(keys, k % half, column);
-    grid->addWidget(styled_label(rows[static_cast<std::size_t>(k)].second, "soft"), k % half,
+    const int column = 3 * (k / high);
+    grid->addWidget(keys, k % high, column);
+    grid->addWidget(styled_label(rows[static_cast<std::size_t>(k)].second, "soft"), k % high,
                     column + 1);
   }
-  grid->setColumnMinimumWidth(2, 24);
+  for (int k = 1; k < columns; ++k) grid->setColumnMinimumWidth(3 * k - 1, 16);
 }
 
 }  // namespace lamella::ui

@@ -81,7 +81,12 @@ void StudyPanel::make_tree() {
   tree_->header()->setStretchLastSection(false);
   tree_->header()->setMinimumSectionSize(40);
   tree_->header()->setSectionResizeMode(StudyModel::name, QHeaderView::Stretch);
-  const std::pair<int, int> widths[] = {{StudyModel::value, 70}, {StudyModel::measured, 46}};
+  const int title =
+      tree_->header()->fontMetrics().horizontalAdvance(
+          model_->headerData(StudyModel::measured, Qt::Horizontal, Qt::DisplayRole).toString()) +
+      14;  // padding of the style
+  const std::pair<int, int> widths[] = {{StudyModel::value, 70},
+                                        {StudyModel::measured, std::max(46, title)}};
   for (const auto& [column, width] : widths) {
     tree_->header()->setSectionResizeMode(column, QHeaderView::Fixed);
     tree_->setColumnWidth(column, width);

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <QFileInfo>
 #include <algorithm>
 #include <csignal>
 #include <string>
@@ -56,7 +57,7 @@ void Recovery::keep() {
 
 void Recovery::drop() {
   wait_.stop();
-  discard({file_, {}});
+  discard({file_, {}, {}});
 }
 
 std::vector<Recovery::Left> Recovery::left_behind() const {
@@ -66,14 +67,11 @@ std::vector<Recovery::Left> Recovery::left_behind() const {
     const fs::path& file = entry.path();
     if (file.extension() != ".lamella" || program_runs(file.stem().string())) continue;
     const Result<std::string> target = read_file(target_file(file));
-    left.push_back({file, target ? fs::path(*target) : fs::path()});
+    left.push_back({file, target ? fs::path(*target) : fs::path(),
+                    QFileInfo(QString::fromStdString(file.string())).lastModified()});
   }
-  const auto written = [](const Left& one) {
-    std::error_code unknown;
-    return fs::last_write_time(one.file, unknown);
-  };
   std::sort(left.begin(), left.end(),
-            [&](const Left& a, const Left& b) { return written(a) < written(b); });
+            [](const Left& a, const Left& b) { return a.written < b.written; });
   return left;
 }
 

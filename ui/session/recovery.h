@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QDateTime>
 #include <QObject>
 #include <QTimer>
 #include <filesystem>
@@ -27,6 +28,7 @@ class Recovery : public QObject {
   struct Left {
     std::filesystem::path file;
     std::filesystem::path made_for;  ///< empty: it was never saved
+    QDateTime written;
   };
   /// The latest last.
   std::vector<Left> left_behind() const;

@@ -118,6 +118,9 @@ class Session : public QObject {
   /// Reads a part file and replaces the study, or adds to it. `unit`: mm per unit of an STL;
   /// 0: guessed by its size.
   void open(const std::vector<std::filesystem::path>& files, bool add = false, double unit = 0);
+  /// Reads the files of the parts again, as one undoable step: what the study asks stays, and what
+  /// it asks of faces goes to where they are now.
+  void reload();
   /// Opens a sample part made by code.
   void open_sample(const std::string& name);
   /// Reads a volume mesh just to look at it.
@@ -217,6 +220,7 @@ class Session : public QObject {
  private:
   friend class EditStudy;
   friend class RemovePart;
+  friend class ReloadParts;
   void set_study(std::shared_ptr<const Study> study);
   /// A part that was removed, and the tolerances of its surface.
   struct TakenPart {
@@ -224,6 +228,14 @@ class Session : public QObject {
     PartSource source;
     LoadParams read_with;
   };
+  /// The parts as they were read, and the study of them.
+  struct ReadState {
+    std::shared_ptr<const std::vector<Part>> parts;
+    std::vector<PartSource> sources;
+    std::shared_ptr<const Study> study;
+  };
+  /// Puts them in the place of the present ones, which are returned.
+  ReadState exchange_parts(ReadState now);
   TakenPart take_part(int index, std::shared_ptr<const Study> after);
   void put_back(int index, TakenPart taken, std::shared_ptr<const Study> after);
   /// Shapes and selection for the bodies as they are now. True where other bodies came.

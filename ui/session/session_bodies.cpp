@@ -1,6 +1,9 @@
 #include <QElapsedTimer>
 #include <algorithm>
+#include <utility>
 
+#include "core/study/moved_faces.h"
+#include "core/study/study_file.h"
 #include "core/study/zone_surface.h"
 #include "ui/commands/edit_study.h"
 #include "ui/session/session.h"
@@ -115,6 +118,64 @@ void Session::put_back(int index, TakenPart taken, std::shared_ptr<const Study> 
   parts_ = std::move(all);
   set_study(std::move(after));
   select(index);
+}
+
+Session::ReadState Session::exchange_parts(ReadState now) {
+  ReadState before{std::exchange(parts_, std::move(now.parts)),
+                   std::exchange(sources_, std::move(now.sources)), study_};
+  set_study(std::move(now.study));
+  return before;
+}
+
+void Session::reload() {
+  if (activity_ != Activity::idle || parts_->empty()) return;
+  Q_EMIT logged(tr("Reading the files of the parts again"));
+  std::vector<StudyInput> inputs = study_->inputs;
+  std::vector<std::filesystem::path> files;
+  for (std::size_t k = 0; k < inputs.size(); ++k)
+    files.push_back(k < project_.files.size() ? project_.files[k]
+                                              : std::filesystem::path(inputs[k].file));
+  begin(
+      Activity::loading,
+      [this, inputs = std::move(inputs), files = std::move(files), left_out = study_->left_out,
+       params = read_with_](const Progress& progress) mutable -> Worker::Done {
+        bool changed = false;
+        const auto read = [&]() -> Result<ReadParts> {
+          std::vector<double> units;
+          for (std::size_t k = 0; k < files.size(); ++k) {
+            const std::string before = inputs[k].sha256;
+            if (const Result<void> known = identify(inputs[k], files[k]); !known)
+              return known.error();
+            changed = changed || inputs[k].sha256 != before;
+            units.push_back(inputs[k].unit);
+          }
+          if (!changed) return ReadParts{};
+          Result<ReadParts> parts = read_parts(services_, files, units, params, progress);
+          if (parts) name_parts(*parts, 0, left_out, true);
+          return parts;
+        };
+        Result<ReadParts> made = read();
+        return [this, changed, made = std::move(made), inputs = std::move(inputs)]() mutable {
+          set_activity(Activity::idle);
+          if (!made) return report(made.error());
+          if (!changed) return Q_EMIT noticed(tr("The parts are as their files have them."), {});
+          Study study = *study_;
+          study.inputs = std::move(inputs);
+          std::vector<std::string> notes = move_faces(study, *parts_, made->parts);
+          for (std::string& note : unmatched(study, made->parts)) notes.push_back(note);
+          arrange_bodies(study, made->parts);
+          const std::size_t count = made->parts.size();
+          undo_.push(new ReloadParts(
+              *this, {std::make_shared<const std::vector<Part>>(std::move(made->parts)),
+                      std::move(made->sources), std::make_shared<const Study>(std::move(study))}));
+          const QString what = count == 1 ? tr("The part was read again.")
+                                          : tr("%1 parts were read again.").arg(count);
+          if (notes.empty())
+            Q_EMIT noticed(what, tr("Its settings, groups and sizes are as they were."));
+          else
+            tell(what, notes);
+        };
+      });
 }
 
 void Session::remove_zone(int index) {

@@ -102,18 +102,19 @@ void Overlay::paint_legend(QPainter& painter) const {
   QFont small = font();
   small.setPointSizeF(small.pointSizeF() - 1);
   const int height = legend_.map.stops.empty() ? 58 : legend_.missing.isEmpty() ? 68 : 88;
-  const QRectF box(margin, margin, bar_width + 28, height);
+  const QString title = legend_.is_length ? legend_.title + ", " + units::name() : legend_.title;
+  QFont bold = font();
+  bold.setWeight(QFont::DemiBold);
+  const int width = std::max(bar_width, QFontMetrics(bold).horizontalAdvance(title) + 2);
+  const QRectF box(margin, margin, width + 28, height);
   painter.setPen(QPen(theme::border, 1));
   QColor paper = theme::panel;
   paper.setAlpha(232);
   painter.setBrush(paper);
   painter.drawRoundedRect(box, 8, 8);
   painter.setPen(theme::text);
-  QFont bold = font();
-  bold.setWeight(QFont::DemiBold);
   painter.setFont(bold);
-  painter.drawText(box.adjusted(14, 7, -14, 0), Qt::AlignLeft | Qt::AlignTop,
-                   legend_.is_length ? legend_.title + ", " + units::name() : legend_.title);
+  painter.drawText(box.adjusted(14, 7, -14, 0), Qt::AlignLeft | Qt::AlignTop, title);
 
   painter.setFont(small);
   if (legend_.map.stops.empty()) {  // nothing to read off

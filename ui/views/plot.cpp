@@ -2,7 +2,6 @@
 
 #include <QMouseEvent>
 #include <QPainter>
-#include <QPainterPath>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,6 +24,19 @@ double nice_step(double span, int steps) {
   const double power = std::pow(10, std::floor(std::log10(raw)));
   const double lead = raw / power;
   return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7 ? 5 : 10);
+}
+
+/// Between the rectangle and the segment, pixels; 0 where they meet.
+double distance_of(const QRectF& place, const QPointF& from, const QPointF& to) {
+  constexpr int samples = 48;
+  double least = std::numeric_limits<double>::max();
+  for (int k = 0; k <= samples; ++k) {
+    const QPointF p = from + (to - from) * k / samples;
+    const double dx = std::max({place.left() - p.x(), 0.0, p.x() - place.right()});
+    const double dy = std::max({place.top() - p.y(), 0.0, p.y() - place.bottom()});
+    least = std::min(least, std::hypot(dx, dy));
+  }
+  return least;
 }
 
 }  // namespace
@@ -100,6 +112,12 @@ void Plot::update_range() {
   high_ = high > low_ ? low_ + (high - low_) * 1.14 : low_ + 1;
 }
 
+QFont Plot::small_font() const {
+  QFont small = font();
+  small.setPointSizeF(small.pointSizeF() - 1);
+  return small;
+}
+
 QRectF Plot::area() const {
   return QRectF(rect()).adjusted(50, legend_below() ? 46 : 30, -14, -24);
 }
@@ -155,12 +173,47 @@ std::vector<double> Plot::ticks() const {
   return values;
 }
 
+QPolygonF Plot::line_of(const Series& series) const {
+  QPolygonF line;
+  for (std::size_t k = 0; k < series.values.size(); ++k)
+    if (std::isfinite(series.values[k]))
+      line << QPointF(x_of(static_cast<int>(k)), y_of(series.values[k]));
+  return line;
+}
+
+QRectF Plot::target_label() const {
+  if (!target_) return {};
+  const QRectF a = area();
+  const QFontMetricsF metrics(small_font());
+  const QSizeF size(metrics.horizontalAdvance(target_name_) + 2, metrics.height());
+  const double y = y_of(*target_);
+  const double left = a.left() + 4;
+  const double free = a.width() - 8 - size.width();
+  constexpr int steps = 8;
+  constexpr double apart = 5;  // half a dot of a series and its line
+  // From the line on, above it before below it, from the left on.
+  for (double off = 1; off < a.height(); off += 4)
+    for (const double top : {y - off - size.height(), y + off})
+      for (int k = 0; k <= steps; ++k) {
+        const QRectF place(QPointF(left + free * k / steps, top), size);
+        if (place.top() < a.top() - 6 || place.bottom() > a.bottom()) continue;
+        const bool clear = std::all_of(series_.begin(), series_.end(), [&](const Series& s) {
+          const QPolygonF line = line_of(s);
+          for (qsizetype i = 0; i < line.size(); ++i)
+            if (distance_of(place, line[std::max<qsizetype>(0, i - 1)], line[i]) < apart)
+              return false;
+          return true;
+        });
+        if (clear) return place;
+      }
+  return {QPointF(left, y - 1 - size.height()), size};
+}
+
 void Plot::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   const QRectF a = area();
-  QFont small = font();
-  small.setPointSizeF(small.pointSizeF() - 1);
+  const QFont small = small_font();
   QFont bold = font();
   bold.setWeight(QFont::DemiBold);
   painter.setFont(small);
@@ -212,35 +265,15 @@ void Plot::paintEvent(QPaintEvent*) {
     painter.setPen(QPen(theme::good, 1.3, Qt::DashLine));
     painter.drawLine(QPointF(a.left(), y_of(*target_)), QPointF(a.right(), y_of(*target_)));
     painter.setPen(theme::good);
-    // On the side of the line where nothing begins.
-    const double y = y_of(*target_);
-    const bool taken = std::any_of(series_.begin(), series_.end(), [&](const Series& s) {
-      const double above = s.values.empty() ? 0 : y - y_of(s.values.front());
-      return above > -3 && above < 22;
-    });
-    painter.drawText(QRectF(a.left() + 4, taken ? y + 1 : y - 17, 160, 16),
-                     Qt::AlignLeft | (taken ? Qt::AlignTop : Qt::AlignBottom), target_name_);
+    painter.drawText(target_label(), Qt::AlignCenter, target_name_);
   }
   for (const Series& s : series_) {
-    QPainterPath path;
-    bool started = false;
-    for (std::size_t k = 0; k < s.values.size(); ++k) {
-      if (!std::isfinite(s.values[k])) continue;
-      const QPointF p(x_of(static_cast<int>(k)), y_of(s.values[k]));
-      if (started) {
-        path.lineTo(p);
-      } else {
-        path.moveTo(p);
-      }
-      started = true;
-    }
+    const QPolygonF line = line_of(s);
     painter.setPen(QPen(s.color, 2, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
-    painter.setBrush(Qt::NoBrush);
-    painter.drawPath(path);
+    painter.drawPolyline(line);
     painter.setBrush(theme::panel);
-    for (std::size_t k = 0; k < s.values.size(); ++k)
-      if (std::isfinite(s.values[k]))
-        painter.drawEllipse(QPointF(x_of(static_cast<int>(k)), y_of(s.values[k])), 3, 3);
+    for (const QPointF& p : line) painter.drawEllipse(p, 3, 3);
+    painter.setBrush(Qt::NoBrush);
   }
   if (hovered_ < 0 || hovered_ >= n) return;
   QStringList lines{tr("Iteration %1").arg(hovered_)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QColor>
+#include <QPolygonF>
 #include <QWidget>
 #include <optional>
 #include <vector>
@@ -32,7 +33,9 @@ class Plot : public QWidget {
   void set_logarithmic(bool on);
   /// Decimals of the values shown on hover.
   void set_decimals(int decimals) { decimals_ = decimals; }
-  QSize minimumSizeHint() const override { return {125, 130}; }
+  /// Where the name of the target is written: by its line, and on no series where there is room.
+  QRectF target_label() const;
+  QSize minimumSizeHint() const override { return {112, 104}; }
 
  Q_SIGNALS:
   void hovered(int index);
@@ -50,6 +53,9 @@ class Plot : public QWidget {
 
  private:
   QRectF area() const;
+  QFont small_font() const;
+  /// The value at each index that has one.
+  QPolygonF line_of(const Series& series) const;
   /// Whether the names of the series need a line below the title.
   bool legend_below() const;
   double x_of(int index) const;

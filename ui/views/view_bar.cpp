@@ -58,12 +58,13 @@ ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(a
   auto* row = new QHBoxLayout;
   row->setSpacing(4);
   rows->addLayout(row);
-  auto* by = new QLabel(tr("Color by"));
-  by->setObjectName("soft");
-  row->addWidget(by);
+  by_ = new QLabel(tr("Color by"));
+  by_->setObjectName("soft");
+  row->addWidget(by_);
   colors_ = new QComboBox;
   colors_->setObjectName("color_by");
   colors_->setAccessibleName(tr("Color by"));
+  colors_->setToolTip(tr("Color by"));
   colors_->addItem(tr("Body"), int(ColorBy::body));
   colors_->addItem(tr("Quality c(T)"), int(ColorBy::quality));
   colors_->addItem(tr("Wall thickness"), int(ColorBy::thickness));
@@ -88,9 +89,7 @@ ViewBar::ViewBar(Actions& actions, QWidget* parent) : QFrame(parent), actions_(a
   row->addWidget(button(actions_[Act::edges]));
   row->addWidget(button(actions_[Act::features]));
   row->addWidget(separator());
-  auto* cut = button(actions_[Act::section]);
-  cut->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  row->addWidget(cut);
+  row->addWidget(button(actions_[Act::section]));  // its name stands in the tool bar
   row->addStretch(1);
   row->addWidget(button(actions_[Act::measure]));
   row->addWidget(button(actions_[Act::ellipsoid]));
@@ -164,7 +163,11 @@ void ViewBar::show_bodies(const QStringList& names, int current) {
   bodies_->clear();
   bodies_->addItems(names);
   bodies_->setCurrentIndex(current);
-  bodies_->setVisible(color_by() == ColorBy::filling && !names.isEmpty());
+  const bool filling = color_by() == ColorBy::filling && !names.isEmpty();
+  // There is no room for both in a narrow window, which would grow while they are both there.
+  if (filling) by_->hide();
+  bodies_->setVisible(filling);
+  by_->setVisible(!filling);
 }
 
 void ViewBar::show_section(const std::optional<Section>& section,

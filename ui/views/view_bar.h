@@ -8,6 +8,7 @@
 #include "ui/views/scene.h"
 
 class QComboBox;
+class QLabel;
 class QDoubleSpinBox;
 class QSlider;
 
@@ -44,6 +45,7 @@ class ViewBar : public QFrame {
   QWidget* make_section_bar();
 
   Actions& actions_;
+  QLabel* by_;
   QComboBox* colors_;
   QComboBox* bodies_;
   QWidget* section_bar_;
