@@ -13,6 +13,7 @@
 #include "core/multidomain/balance.h"
 #include "core/multidomain/chord_metric.h"
 #include "core/multidomain/exact_interface.h"
+#include "core/multidomain/interface_cut.h"
 #include "core/multidomain/interface_metric.h"
 #include "core/natural/boundary_distance.h"
 #include "core/optimize/adapt.h"
@@ -190,9 +191,10 @@ class AssemblyLoop {
   Result<void> balance(const Progress& progress) {
     if (std::exchange(balanced_, true)) return {};
     MeshState state = current_;
-    const std::size_t moved =
-        balance_borders(state.mesh, *of_.partition, first_face_, kOffBorder * of_.mesh_tolerance,
-                        options_.threads, progress);
+    const std::size_t moved = balance_borders(
+        state.mesh, *of_.partition, first_face_,
+        {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance, of_.domain.get(), options_.threads},
+        progress);
     if (moved == 0 || !validate<3>(state.mesh).ok()) return {};
     const Result<IterationRecord> measured = measure(state, progress);
     if (!measured) return measured.error();
@@ -341,24 +343,35 @@ class AssemblyLoop {
     return member.correction.apply(x, member.detector->at(x, member.natural).metric,
                                    member.natural.h_min);
   }
+  /// Whether the region is thinner around x than what a mesh within the tolerance has to resolve:
+  /// the slit between a hole and the screw in it, each with triangles of its own.
+  bool closes(int region, const Vec<3>& x) const {
+    const Member& member = of_.members[region];
+    return member.detector->at(x, member.natural).thickness < shared_share * of_.mesh_tolerance;
+  }
 
   /// The natural metric of the region that x lies in, refined towards the sizes beyond its borders
   /// as they come near: M_b / (1 + l ln 2)^2 at the distance l in the metric of the neighbor.
+  /// Regions ask for nothing where they close.
   Metric<3> natural_at(const Vec<3>& x) const {
     const int own = of_.partition->region_of(x);
-    Metric<3> metric = natural_in(own, x);
+    const bool closed = closes(own, x);
+    std::optional<Metric<3>> metric;
+    if (!closed) metric = natural_in(own, x);
     const double beside = 0.1 * of_.mesh_tolerance;
     std::vector<Border<3>> near;
-    of_.partition->borders(x, 3 * sizes<3>(metric)[0] / kGrowth, near);
+    of_.partition->borders(x, metric ? 3 * sizes<3>(*metric)[0] / kGrowth : 2 * of_.mesh_tolerance,
+                           near);
     for (const auto& [zone, border] : near) {
       const Vec<3> there = x + (border.distance + beside) * border.normal;
       const int other = of_.partition->region_of(there);
-      if (other == own || (exact_ && of_.body_of[other] < 0)) continue;
+      if (other == own || (exact_ && of_.body_of[other] < 0) || closes(other, there)) continue;
       const Metric<3> beyond = natural_in(other, there);
       const double length = border.distance * std::sqrt(border.normal.dot(beyond * border.normal));
-      metric = intersect<3>(metric, beyond / std::pow(1 + kGrowth * length, 2));
+      const Metric<3> here = beyond / std::pow(1 + kGrowth * length, 2);
+      metric = metric ? intersect<3>(*metric, here) : here;
     }
-    return metric;
+    return metric ? *metric : natural_in(own, x);
   }
 
   /// What bounds a body towards a dropped one is its wall.

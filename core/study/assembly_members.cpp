@@ -105,7 +105,7 @@ class Layout {
       member.endless = std::holds_alternative<ZoneHalfSpace>(zone.shape) ||
                        std::holds_alternative<ZoneCell>(zone.shape);
       member.part.surface = std::move(*surface);
-      member.part.cad_volume = zone_volume(zone, member.part.surface);
+      member.part.cad_volume = zone_volume(zone, member.part.surface, hull_);
       assembly_.members.push_back(std::move(member));
       // There is nothing between the cells.
       assembly_.full = assembly_.full || std::holds_alternative<ZoneCell>(zone.shape);
