@@ -211,4 +211,22 @@ std::size_t balance_borders(SimplexMesh<3>& mesh, const Partition<3>& partition,
   return Balance(mesh, partition, first_face, params).run(progress);
 }
 
+bool put_back(SimplexMesh<3>& mesh, const std::vector<Vec<3>>& points,
+              const std::vector<Vec<3>>& places, double reach) {
+  bool any = false;
+  for (const auto& e : mesh.elements) {
+    Box<3> box;
+    for (NodeId n : e) box.add(mesh.points[n]);
+    if (std::none_of(places.begin(), places.end(), [&](const Vec<3>& x) {
+          return (x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm() <= reach;
+        }))
+      continue;
+    for (NodeId n : e) {
+      any = any || mesh.points[n] != points[n];
+      mesh.points[n] = points[n];
+    }
+  }
+  return any;
+}
+
 }  // namespace lamella

@@ -26,4 +26,9 @@ std::size_t balance_borders(SimplexMesh<3>& mesh, const Partition<3>& partition,
                             std::span<const std::int32_t> first_face, const BalanceParams& params,
                             const Progress& progress = {});
 
+/// Moves the nodes of elements within `reach` mm of the places to where they were (`points`);
+/// whether any was elsewhere.
+bool put_back(SimplexMesh<3>& mesh, const std::vector<Vec<3>>& points,
+              const std::vector<Vec<3>>& places, double reach);
+
 }  // namespace lamella

@@ -167,54 +167,12 @@ Vec<3> CutTopology::nearest_in(const Element& nodes, unsigned bits, const Weight
   return x / sum;
 }
 
-/// A node of a feature within `merge` of x, or a new one on such a feature: in an element around
-/// `from`, if there is one, so that both are joined, and else around any of the nodes.
-template <class Onwards>
-NodeId CutTopology::join_features(const Element& nodes, const Vec<3>& x, NodeId from,
-                                  const Onwards& onwards) {
-  const std::span<const NodeId> centers =
-      from == 0 ? std::span<const NodeId>(nodes) : std::span<const NodeId>(&from, 1);
-  NodeId nearest = 0;
-  double least = merge;
-  std::array<NodeId, 2> edge{};
-  double along = 0, beside = merge;
-  for (NodeId center : centers)
-    for (auto e : topo.around.of(center)) {
-      if (topo.is_virtual(e)) continue;
-      const Element& v = topo.elements[e];
-      for (int i = 0; i < 4; ++i) {
-        if (!locked[v[i]]) continue;
-        const double d = (at(v[i]) - x).norm();
-        if (v[i] != from && d < least && onwards(at(v[i]))) {
-          nearest = v[i];
-          least = d;
-        }
-        for (int j = 0; j < i; ++j) {
-          if (!locked[v[j]] || !features.contains(key(v[i], v[j]))) continue;
-          const Vec<3> way = at(v[j]) - at(v[i]);
-          const double t = (x - at(v[i])).dot(way) / way.squaredNorm();
-          const Vec<3> y = at(v[i]) + t * way;
-          if (!(t > 0.01 && t < 0.99) || !((y - x).norm() < beside) || !onwards(y)) continue;
-          edge = {v[i], v[j]};
-          along = t;
-          beside = (y - x).norm();
-        }
-      }
-    }
-  if (nearest != 0) return nearest;
-  if (edge[0] == 0) return 0;
-  const Vec<3> y = at(edge[0]) + along * (at(edge[1]) - at(edge[0]));
-  const NodeId n = split_at(edge, y, std::array{1 - along, along});
-  return n == 0 ? 0 : lock(n);
-}
-
 NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec<3>& x, NodeId from,
                                const Vec<3>& goal) {
   const auto onwards = [&](const Vec<3>& y) {
     return from == 0 || (goal - y).norm() < (goal - at(from)).norm();
   };
   const Element nodes = topo.elements[e];
-  if (const NodeId n = join_features(nodes, x, from, onwards)) return n;
   Packed<3> m = Packed<3>::zero();
   for (NodeId n : nodes) m.add(0.25, metric[n]);
   std::array<int, 4> order{0, 1, 2, 3};
@@ -224,7 +182,7 @@ NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec
   for (int k : order) {
     const NodeId n = nodes[k];
     const double d = (at(n) - x).norm();
-    if (d <= exact) {
+    if (d <= exact || (locked[n] && d <= merge && n != from && onwards(at(n)))) {
       if (!locked[n] && hold_allows(std::array{n}, x)) topo.points[n] = x;
       return lock(n);
     }
@@ -261,7 +219,15 @@ NodeId CutTopology::bring_node(std::int32_t e, const Weights& weights, const Vec
       if (size < 4) {
         const double off = (x - nearest_in(nodes, c.bits, weights)).norm();
         const bool there = off <= exact;
-        if (!there && size == 2 && features.contains(key(of[0], of[1]))) continue;
+        if (!there && size == 2 && features.contains(key(of[0], of[1]))) {
+          // What runs along another feature joins it.
+          const Vec<3> along = at(of[1]) - at(of[0]);
+          const double t = (x - at(of[0])).dot(along) / along.squaredNorm();
+          const Vec<3> y = at(of[0]) + t * along;
+          if (!(t > 0.01 && t < 0.99) || (y - x).norm() > merge || !onwards(y)) continue;
+          if (const NodeId n = split_at(of, y, std::array{1 - t, t})) return lock(n);
+          continue;
+        }
         if (!there && c.far2 > close * close) continue;
         if (!there && !hold_allows(of, x)) continue;
       }

@@ -69,8 +69,6 @@ class CutTopology {
     locked[n] = 1;
     return n;
   }
-  template <class Onwards>
-  NodeId join_features(const Element& nodes, const Vec<3>& x, NodeId from, const Onwards& onwards);
   Vec<3> nearest_in(const Element& nodes, unsigned bits, const Weights& weights) const;
 
   const Partition<3>& partition_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -50,6 +51,42 @@ constexpr double doubt_share = 1;
 using Element = CutTopology::Element;
 using Weights = CutTopology::Weights;
 
+/// Points of features that were followed: those of the next are the same where they are nearer than
+/// `reach` mm, as on both edges of a step that is lower than the tolerance.
+class Followed {
+ public:
+  explicit Followed(double reach) : reach_(reach) {}
+  void add(const std::vector<Vec<3>>& points) {
+    for (const Vec<3>& x : points) cells_[cell(x)].push_back(x);
+  }
+  Vec<3> near(const Vec<3>& x) const {
+    const Cell middle = cell(x);
+    Vec<3> nearest = x;
+    double least = reach_;
+    for (int k = 0; k < 27; ++k) {
+      const auto found =
+          cells_.find({middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1});
+      if (found == cells_.end()) continue;
+      for (const Vec<3>& y : found->second)
+        if (const double d = (y - x).norm(); d < least) {
+          least = d;
+          nearest = y;
+        }
+    }
+    return nearest;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  Cell cell(const Vec<3>& x) const {
+    Cell c{};
+    for (int k = 0; k < 3; ++k) c[k] = static_cast<std::int64_t>(std::floor(x[k] / reach_));
+    return c;
+  }
+  double reach_;
+  std::map<Cell, std::vector<Vec<3>>> cells_;
+};
+
 class Cutter {
  public:
   Cutter(const SimplexMesh<3>& mesh, const MetricField<3>& metric, const Partition<3>& partition,
@@ -58,7 +95,8 @@ class Cutter {
         params_(params),
         initial_(mesh.elements),
         locator_(mesh),
-        mesh_(mesh, metric, partition, params, metric_at) {}
+        mesh_(mesh, metric, partition, params, metric_at),
+        followed_(mesh_.merge) {}
 
   bool cut(int zone, const ReferenceSurface<3>& surface, const Progress& progress) {
     zone_ = zone;
@@ -138,15 +176,19 @@ class Cutter {
         feature_chains(with_creases(surface, deep), chain_share * params_.tolerance);
     for (std::int32_t c : surface.corners) {
       if (progress.cancelled()) return false;
-      const Vec<3> x = shared(surface.points[c]);
+      const Vec<3> x = followed_.near(shared(surface.points[c]));
       if (reachable(x)) place(x);
+      followed_.add({x});
     }
     for (std::size_t i = 0; i < chains.size(); ++i) {
       NodeId reached = 0;
-      for (std::size_t k = 0; k + 1 < chains[i].size(); ++k) {
+      std::vector<Vec<3>> points;
+      for (const Vec<3>& x : chains[i]) points.push_back(followed_.near(shared(x)));
+      for (std::size_t k = 0; k + 1 < points.size(); ++k) {
         if (progress.cancelled()) return false;
-        reached = follow(shared(chains[i][k]), shared(chains[i][k + 1]), reached);
+        reached = follow(points[k], points[k + 1], reached);
       }
+      followed_.add(points);
       progress.report(static_cast<double>(i + 1) / static_cast<double>(chains.size()));
     }
     return true;
@@ -582,6 +624,7 @@ class Cutter {
   const std::vector<Element>& initial_;
   ElementLocator<3> locator_;
   CutTopology mesh_;
+  Followed followed_;
   int zone_ = 0;
   std::vector<double> phi_;    ///< [node] of the zone that is being cut
   std::vector<double> slack_;  ///< [node that was there before edges were split] how far off it is

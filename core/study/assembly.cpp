@@ -15,7 +15,6 @@
 #include "core/multidomain/exact_interface.h"
 #include "core/multidomain/interface_cut.h"
 #include "core/multidomain/interface_metric.h"
-#include "core/natural/boundary_distance.h"
 #include "core/optimize/adapt.h"
 #include "core/study/assembly_members.h"
 #include "core/study/join.h"
@@ -35,7 +34,8 @@ constexpr int kReportDepth = 6;     // bisections for the figures that are repor
 constexpr double kSlope = 1;        // growth of sizes across fuzzy borders with the distance
 constexpr double kGrowth = 0.7;     // of a neighbor's sizes with the distance in its metric: ln 2
 constexpr double kOffBorder = 0.8;  // of the tolerance, that nodes may leave borders for volumes
-constexpr double kUnseen = 0.01;    // of the tolerance: what lies deeper in others is no border
+constexpr int kReturns = 4;       // times that nodes which left borders go back where it is too far
+constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
 
 /// Regions of fuzzy interfaces are names of elements: nothing is to be held at their steps.
 SimplexMesh<3> as_one_body(SimplexMesh<3> mesh) {
@@ -150,19 +150,8 @@ class AssemblyLoop {
       if (Result<void> balanced = balance(progress); !balanced) return balanced.error();
     for (std::size_t m = 0; exact_ && m < of_.members.size(); ++m) {
       if (of_.body_of[m] < 0) continue;
-      const Member& member = of_.members[m];
       const SimplexMesh<3> body = extract_body(current_.mesh, of_.body_of[m]);
-      if (body.elements.empty()) continue;
-      of_.outcomes[m].mesh_volume = volume_of(body);
-      Covered covered;
-      if (member.bounds)
-        covered = [&](const Vec<3>& x) {
-          return of_.beyond(static_cast<int>(m), x) - kUnseen * of_.chord_tolerance;
-        };
-      Result<BoundaryDistance> distance =
-          boundary_distance(body, member.walls(), options_.threads, progress, covered);
-      if (!distance) return distance.error();
-      of_.outcomes[m].boundary_distance = *distance;
+      if (!body.elements.empty()) of_.outcomes[m].mesh_volume = volume_of(body);
     }
     if (exact_) {
       std::vector<BodyOutcome> kept;
@@ -186,8 +175,9 @@ class AssemblyLoop {
     return volume;
   }
 
-  /// The last touch to exact borders: what was adapted again would go back onto them.
-  /// Qualities are those of the mesh that is handed out. Errors: cancelled.
+  /// The last touch to exact borders: what was adapted again would go back onto them. Where that
+  /// takes a body too far from its surface nodes go back at once. Qualities are those of the mesh
+  /// that is handed out. Errors: cancelled.
   Result<void> balance(const Progress& progress) {
     if (std::exchange(balanced_, true)) return {};
     MeshState state = current_;
@@ -195,7 +185,18 @@ class AssemblyLoop {
         state.mesh, *of_.partition, first_face_,
         {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance, of_.domain.get(), options_.threads},
         progress);
-    if (moved == 0 || !validate<3>(state.mesh).ok()) return {};
+    for (int i = 0;; ++i) {
+      Result<std::vector<Vec<3>>> far =
+          of_.measure_distances(state.mesh, options_.threads, progress);
+      if (!far) return far.error();
+      if (i == kReturns || !put_back(state.mesh, current_.mesh.points, *far, of_.chord_tolerance))
+        break;
+    }
+    if (moved == 0) return {};
+    if (!validate<3>(state.mesh).ok()) {
+      const auto before = of_.measure_distances(current_.mesh, options_.threads, progress);
+      return before ? Result<void>{} : before.error();
+    }
     const Result<IterationRecord> measured = measure(state, progress);
     if (!measured) return measured.error();
     IterationRecord& last = records_.back();
