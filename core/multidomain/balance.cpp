@@ -83,17 +83,25 @@ class Balance {
   }
   const Zone<3>& zone(int k) const { return k == wall ? *params_.domain : partition_.zone(k); }
 
-  /// The largest distance of a facet from its border.
-  double far(std::size_t f) const {
+  /// The largest distance of a facet from its border, outside and inside of it.
+  std::array<double, 2> far(std::size_t f) const {
     const auto p = mesh_.corners(mesh_.facets[f]);
     const Zone<3>& border = zone(zone_of(f));
-    double most = 0;
+    std::array<double, 2> most{};
     for (int i = 0; i <= samples; ++i)
-      for (int j = 0; i + j <= samples; ++j)
-        most = std::max(
-            most,
-            std::abs(border.distance((i * p[0] + j * p[1] + (samples - i - j) * p[2]) / samples)));
+      for (int j = 0; i + j <= samples; ++j) {
+        const double d =
+            border.distance((i * p[0] + j * p[1] + (samples - i - j) * p[2]) / samples);
+        double& side = most[d < 0 ? 1 : 0];
+        side = std::max(side, std::abs(d));
+      }
     return most;
+  }
+  bool too_far(std::size_t i) const {
+    const auto now = far(facets_[i]);
+    for (int side = 0; side < 2; ++side)
+      if (now[side] > std::max(params_.tolerance, far_[i][side])) return true;
+    return false;
   }
 
   /// Nodes stay where the border is not smooth.
@@ -185,7 +193,7 @@ class Balance {
         const auto& nodes = mesh_.facets[facets_[i]];
         if (std::any_of(nodes.begin(), nodes.end(),
                         [&](NodeId n) { return mesh_.points[n] != start[n]; }))
-          off[i] = far(facets_[i]) > std::max(params_.tolerance, far_[i]);
+          off[i] = too_far(i);
       });
       for (std::size_t i = 0; i < facets_.size(); ++i)
         if (off[i]) back(mesh_.facets[facets_[i]]);
@@ -197,10 +205,10 @@ class Balance {
   const Partition<3>& partition_;
   const std::span<const std::int32_t> first_face_;
   const BalanceParams& params_;
-  std::vector<NodeShares> shares_;   ///< [node]
-  std::vector<std::size_t> facets_;  ///< of borders that are known
-  std::vector<Vec<3>> before_;       ///< [node]
-  std::vector<double> far_;          ///< [of facets_] mm, before
+  std::vector<NodeShares> shares_;          ///< [node]
+  std::vector<std::size_t> facets_;         ///< of borders that are known
+  std::vector<Vec<3>> before_;              ///< [node]
+  std::vector<std::array<double, 2>> far_;  ///< [of facets_] mm, before
 };
 
 }  // namespace
