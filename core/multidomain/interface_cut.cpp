@@ -96,7 +96,7 @@ class Cutter {
         initial_(mesh.elements),
         locator_(mesh),
         mesh_(mesh, metric, partition, params, metric_at),
-        followed_(mesh_.merge) {}
+        followed_(shared_share * params.tolerance) {}
 
   bool cut(int zone, const ReferenceSurface<3>& surface, const Progress& progress) {
     zone_ = zone;
@@ -589,9 +589,12 @@ class Cutter {
       if (std::abs(in.mean) > std::abs(most)) side[i] = in.mean < 0;
       const bool feature =
           std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) { return mesh_.locked[n] != 0; });
-      // What lies between the border and that of another zone that it became one with.
-      const bool closed = most == 0 && std::any_of(nodes.begin(), nodes.end(),
-                                                   [&](NodeId n) { return slack(n) > mesh_.on; });
+      // A slit between the border and that of another zone that it became one with.
+      const Corners<3> p = mesh_.corners(nodes);
+      const bool closed =
+          feature && most == 0 &&
+          std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) { return slack(n) > mesh_.on; }) &&
+          partition_.region_of((p[0] + p[1] + p[2] + p[3]) / 4) == partition_.background();
       const double limit = feature && !closed ? dip_share : doubt_share;
       doubt[i] = std::max(in.most, std::abs(most)) <= limit * params_.tolerance;
     });

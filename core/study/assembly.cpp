@@ -347,6 +347,7 @@ class AssemblyLoop {
   /// Whether the region is thinner around x than what a mesh within the tolerance has to resolve:
   /// the slit between a hole and the screw in it, each with triangles of its own.
   bool closes(int region, const Vec<3>& x) const {
+    if (of_.full) return false;  // nothing is between cells
     const Member& member = of_.members[region];
     return member.detector->at(x, member.natural).thickness < shared_share * of_.mesh_tolerance;
   }
