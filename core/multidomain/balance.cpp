@@ -15,102 +15,226 @@ constexpr double smooth_turn = 0.8;
 constexpr int rounds = 3;
 /// Of an element's volume: what a round must leave of it.
 constexpr double least_left = 0.5;
+/// Of the way allowed: steps below are rounding.
+constexpr double least_step = 1e-6;
+/// Points of a facet, to an edge, where its distance is asked.
+constexpr int samples = 4;
+constexpr int wall = -1, none = -2;  // in place of a zone
 
 /// Barycentric weights whose mean is exact for quadratic functions on a triangle.
 constexpr std::array<std::array<double, 3>, 3> middles{
     {{0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}};
 
-struct NodeShare {
-  double area = 0;     ///< a third of the facets around, mm^2
+/// What the facets of a border around a node have of it.
+struct Share {
+  int zone = none;
+  double area = 0;     ///< a third of the facets, mm^2
   double missing = 0;  ///< what they lack, mm^3
-  std::int32_t zone = -1;
-  std::int32_t group = -1;
+};
+
+struct NodeShares {
+  std::array<Share, 2> of;
   bool moves = true;
+
+  Share& operator[](int zone) { return of[of[0].zone == zone ? 0 : 1]; }
+  /// A third border holds the node.
+  void add(int zone) {
+    for (Share& s : of) {
+      if (s.zone == none) s.zone = zone;
+      if (s.zone == zone) return;
+    }
+    moves = false;
+  }
+};
+
+class Balance {
+ public:
+  Balance(SimplexMesh<3>& mesh, const Partition<3>& partition,
+          std::span<const std::int32_t> first_face, const BalanceParams& params)
+      : mesh_(mesh),
+        partition_(partition),
+        first_face_(first_face),
+        params_(params),
+        shares_(mesh.points.size()) {}
+
+  std::size_t run(const Progress& progress) {
+    for (std::size_t f = 0; f < mesh_.facets.size(); ++f) {
+      const int zone = zone_of(f);
+      if (zone != wall || params_.domain) facets_.push_back(f);
+      for (NodeId n : mesh_.facets[f]) {
+        shares_[n].add(zone);
+        if (zone == wall && !params_.domain) shares_[n].moves = false;
+      }
+    }
+    before_ = mesh_.points;
+    far_.resize(facets_.size());
+    if (!hold_edges(progress.portion(0, 0.25))) return 0;
+    for (int round = 0; round < rounds; ++round)
+      if (!step(progress.portion(0.25 * (round + 1), 0.25 * (round + 2)))) break;
+    std::size_t moved = 0;
+    for (std::size_t n = 1; n < before_.size(); ++n) moved += mesh_.points[n] != before_[n];
+    return moved;
+  }
+
+ private:
+  int zone_of(std::size_t f) const {
+    const auto it = std::upper_bound(first_face_.begin(), first_face_.end(), mesh_.facet_face[f]);
+    return static_cast<int>(it - first_face_.begin()) - 1;
+  }
+  const Zone<3>& zone(int k) const { return k == wall ? *params_.domain : partition_.zone(k); }
+
+  /// The largest distance of a facet from its border, outside and inside of it.
+  std::array<double, 2> far(std::size_t f) const {
+    const auto p = mesh_.corners(mesh_.facets[f]);
+    const Zone<3>& border = zone(zone_of(f));
+    std::array<double, 2> most{};
+    for (int i = 0; i <= samples; ++i)
+      for (int j = 0; i + j <= samples; ++j) {
+        const double d =
+            border.distance((i * p[0] + j * p[1] + (samples - i - j) * p[2]) / samples);
+        double& side = most[d < 0 ? 1 : 0];
+        side = std::max(side, std::abs(d));
+      }
+    return most;
+  }
+  bool too_far(std::size_t i) const {
+    const auto now = far(facets_[i]);
+    for (int side = 0; side < 2; ++side)
+      if (now[side] > std::max(params_.tolerance, far_[i][side])) return true;
+    return false;
+  }
+
+  /// Nodes stay where the border is not smooth.
+  bool hold_edges(const Progress& progress) {
+    std::vector<char> rough(facets_.size());
+    const auto find_rough = [&](std::size_t i) {
+      const auto p = mesh_.corners(mesh_.facets[facets_[i]]);
+      const Vec<3> normal = facet_normal<3>(p).normalized();
+      for (const Vec<3>& x : p)
+        rough[i] |= std::abs(zone(zone_of(facets_[i])).at(x).normal.dot(normal)) < smooth_turn;
+      far_[i] = far(facets_[i]);
+    };
+    if (!parallel_each(facets_.size(), params_.threads, progress, find_rough)) return false;
+    for (std::size_t i = 0; i < facets_.size(); ++i)
+      if (rough[i])
+        for (NodeId n : mesh_.facets[facets_[i]]) shares_[n].moves = false;
+    return true;
+  }
+
+  /// Where the node goes for what its borders lack, from where it was.
+  Vec<3> asked(const NodeShares& s, NodeId n) const {
+    const auto lacks = [](const Share& of) { return of.area > 0 ? of.missing / of.area : 0; };
+    const Vec<3> x = mesh_.points[n] - before_[n];
+    const Vec<3> m = zone(s.of[0].zone).at(before_[n]).normal;
+    if (s.of[1].zone == none) return x + lacks(s.of[0]) * m;
+    // The shortest step that has both along their normals.
+    const Vec<3> k = zone(s.of[1].zone).at(before_[n]).normal;
+    const double c = m.dot(k), a = lacks(s.of[0]), b = lacks(s.of[1]);
+    if (std::abs(c) > smooth_turn) return x;
+    return x + ((a - c * b) * m + (b - c * a) * k) / (1 - c * c);
+  }
+
+  bool step(const Progress& progress) {
+    std::vector<double> depth(facets_.size());  // mean signed distance of a facet
+    const auto distances = [&](std::size_t i) {
+      const auto p = mesh_.corners(mesh_.facets[facets_[i]]);
+      const Zone<3>& border = zone(zone_of(facets_[i]));
+      for (const auto& w : middles)
+        depth[i] += border.distance(w[0] * p[0] + w[1] * p[1] + w[2] * p[2]) / 3;
+    };
+    if (!parallel_each(facets_.size(), params_.threads, progress, distances)) return false;
+    for (NodeShares& s : shares_)
+      for (Share& of : s.of) of.area = of.missing = 0;
+    for (std::size_t i = 0; i < facets_.size(); ++i) {
+      const auto& nodes = mesh_.facets[facets_[i]];
+      const int zone = zone_of(facets_[i]);
+      const double area = facet_normal<3>(mesh_.corners(nodes)).norm() / 2;
+      const auto moving =
+          std::count_if(nodes.begin(), nodes.end(), [&](NodeId n) { return shares_[n].moves; });
+      for (NodeId n : nodes) {
+        if (!shares_[n].moves) continue;
+        shares_[n][zone].area += area / 3;
+        shares_[n][zone].missing -= depth[i] * area / static_cast<double>(moving);
+      }
+    }
+    std::vector<double> volume(mesh_.elements.size());
+    for (std::size_t e = 0; e < volume.size(); ++e)
+      volume[e] = signed_measure<3>(mesh_.corners(mesh_.elements[e]));
+    const std::vector<Vec<3>> start = mesh_.points;
+    std::vector<Vec<3>> next = start;
+    parallel_each(mesh_.node_count(), params_.threads, {}, [&](std::size_t i) {
+      const NodeShares& s = shares_[i + 1];
+      if (!s.moves || s.of[0].zone == none) return;
+      const Vec<3> to = asked(s, static_cast<NodeId>(i + 1));
+      // A node of a wall that was itself made of chords starts that far inside.
+      double inside = 0;
+      for (const Share& of : s.of)
+        if (of.zone == wall) inside = std::abs(params_.domain->distance(before_[i + 1]));
+      const double way = to.norm(), most = params_.most + inside;
+      if (way > least_step * params_.most)
+        next[i + 1] = before_[i + 1] + to * (way > most ? most / way : 1);
+    });
+    mesh_.points = std::move(next);
+    // Nodes of an element that lost too much go back, and of a facet that is too far, which may
+    // cost others theirs.
+    for (bool any = true; any;) {
+      any = false;
+      const auto back = [&](const auto& nodes) {
+        for (NodeId n : nodes) {
+          any = any || mesh_.points[n] != start[n];
+          mesh_.points[n] = start[n];
+        }
+      };
+      for (std::size_t e = 0; e < volume.size(); ++e)
+        if (signed_measure<3>(mesh_.corners(mesh_.elements[e])) < least_left * volume[e])
+          back(mesh_.elements[e]);
+      std::vector<char> off(facets_.size(), 0);
+      parallel_each(facets_.size(), params_.threads, {}, [&](std::size_t i) {
+        const auto& nodes = mesh_.facets[facets_[i]];
+        if (std::any_of(nodes.begin(), nodes.end(),
+                        [&](NodeId n) { return mesh_.points[n] != start[n]; }))
+          off[i] = too_far(i);
+      });
+      for (std::size_t i = 0; i < facets_.size(); ++i)
+        if (off[i]) back(mesh_.facets[facets_[i]]);
+    }
+    return true;
+  }
+
+  SimplexMesh<3>& mesh_;
+  const Partition<3>& partition_;
+  const std::span<const std::int32_t> first_face_;
+  const BalanceParams& params_;
+  std::vector<NodeShares> shares_;          ///< [node]
+  std::vector<std::size_t> facets_;         ///< of borders that are known
+  std::vector<Vec<3>> before_;              ///< [node]
+  std::vector<std::array<double, 2>> far_;  ///< [of facets_] mm, before
 };
 
 }  // namespace
 
 std::size_t balance_borders(SimplexMesh<3>& mesh, const Partition<3>& partition,
-                            std::span<const std::int32_t> first_face, double most, int threads,
+                            std::span<const std::int32_t> first_face, const BalanceParams& params,
                             const Progress& progress) {
-  const auto zone_of = [&](std::size_t f) {
-    const auto it = std::upper_bound(first_face.begin(), first_face.end(), mesh.facet_face[f]);
-    return static_cast<std::int32_t>(it - first_face.begin()) - 1;
-  };
-  std::vector<NodeShare> shares(mesh.points.size());
-  std::vector<std::size_t> facets;
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    const std::int32_t zone = zone_of(f);
-    if (zone >= 0) facets.push_back(f);
-    for (NodeId n : mesh.facets[f]) {
-      NodeShare& s = shares[n];
-      if (s.zone < 0) s.zone = zone, s.group = mesh.facet_group[f];
-      s.moves = s.moves && zone >= 0 && s.zone == zone && s.group == mesh.facet_group[f];
-    }
-  }
-  std::vector<char> rough(facets.size());
-  const auto find_rough = [&](std::size_t i) {
-    const auto p = mesh.corners(mesh.facets[facets[i]]);
-    const Vec<3> normal = facet_normal<3>(p).normalized();
-    const Zone<3>& zone = partition.zone(zone_of(facets[i]));
-    for (const Vec<3>& x : p)
-      rough[i] |= std::abs(zone.at(x).normal.dot(normal)) < smooth_turn ? 1 : 0;
-  };
-  if (!parallel_each(facets.size(), threads, progress.portion(0, 0.25), find_rough)) return 0;
-  for (std::size_t i = 0; i < facets.size(); ++i)
-    if (rough[i])
-      for (NodeId n : mesh.facets[facets[i]]) shares[n].moves = false;
+  return Balance(mesh, partition, first_face, params).run(progress);
+}
 
-  const std::vector<Vec<3>> before = mesh.points;
-  std::vector<double> depth(facets.size());  // mean signed distance of a facet
-  for (int round = 0; round < rounds; ++round) {
-    const Progress own = progress.portion(0.25 * (round + 1), 0.25 * (round + 2));
-    const auto distances = [&](std::size_t i) {
-      const auto p = mesh.corners(mesh.facets[facets[i]]);
-      const Zone<3>& zone = partition.zone(zone_of(facets[i]));
-      depth[i] = 0;
-      for (const auto& w : middles)
-        depth[i] += zone.distance(w[0] * p[0] + w[1] * p[1] + w[2] * p[2]) / 3;
-    };
-    if (!parallel_each(facets.size(), threads, own, distances)) break;
-    for (NodeShare& s : shares) s.area = s.missing = 0;
-    for (std::size_t i = 0; i < facets.size(); ++i) {
-      const auto& nodes = mesh.facets[facets[i]];
-      const double area = facet_normal<3>(mesh.corners(nodes)).norm() / 2;
-      const auto moving =
-          std::count_if(nodes.begin(), nodes.end(), [&](NodeId n) { return shares[n].moves; });
-      for (NodeId n : nodes) {
-        shares[n].area += area / 3;
-        if (shares[n].moves) shares[n].missing -= depth[i] * area / static_cast<double>(moving);
-      }
-    }
-    std::vector<double> volume(mesh.elements.size());
-    for (std::size_t e = 0; e < volume.size(); ++e)
-      volume[e] = signed_measure<3>(mesh.corners(mesh.elements[e]));
-    const std::vector<Vec<3>> start = mesh.points;
-    parallel_each(mesh.node_count(), threads, {}, [&](std::size_t i) {
-      const NodeShare& s = shares[i + 1];
-      if (!s.moves || s.zone < 0 || !(s.area > 0)) return;
-      const Vec<3> normal = partition.zone(s.zone).at(before[i + 1]).normal;
-      const Vec<3> to = start[i + 1] + s.missing / s.area * normal - before[i + 1];
-      const double far = to.norm();
-      mesh.points[i + 1] = before[i + 1] + to * (far > most ? most / far : 1);
-    });
-    // Nodes of an element that lost too much go back, which may cost others theirs.
-    for (bool any = true; any;) {
-      any = false;
-      for (std::size_t e = 0; e < volume.size(); ++e) {
-        if (signed_measure<3>(mesh.corners(mesh.elements[e])) >= least_left * volume[e]) continue;
-        for (NodeId n : mesh.elements[e]) {
-          any = any || mesh.points[n] != start[n];
-          mesh.points[n] = start[n];
-        }
-      }
+bool put_back(SimplexMesh<3>& mesh, const std::vector<Vec<3>>& points,
+              const std::vector<Vec<3>>& places, double reach) {
+  bool any = false;
+  for (const auto& e : mesh.elements) {
+    Box<3> box;
+    for (NodeId n : e) box.add(mesh.points[n]);
+    if (std::none_of(places.begin(), places.end(), [&](const Vec<3>& x) {
+          return (x - x.cwiseMax(box.lo).cwiseMin(box.hi)).norm() <= reach;
+        }))
+      continue;
+    for (NodeId n : e) {
+      any = any || mesh.points[n] != points[n];
+      mesh.points[n] = points[n];
     }
   }
-  std::size_t moved = 0;
-  for (std::size_t n = 1; n < before.size(); ++n) moved += mesh.points[n] != before[n];
-  return moved;
+  return any;
 }
 
 }  // namespace lamella

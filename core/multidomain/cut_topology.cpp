@@ -15,7 +15,7 @@ constexpr double least_part = 0.2;
 /// Of the tolerance: nodes this near to a border lie on it.
 constexpr double on_share = 0.02;
 /// Of the tolerance: features this near to each other are one.
-constexpr double merge_share = 0.2;
+constexpr double merge_share = 0.5;
 
 }  // namespace
 

@@ -9,10 +9,10 @@
 #include <set>
 
 #include "core/base/parallel.h"
-#include "core/mesh/adjacency.h"
 #include "core/mesh/element_locator.h"
 #include "core/multidomain/border_fit.h"
 #include "core/multidomain/border_sides.h"
+#include "core/multidomain/cut_mesh.h"
 #include "core/multidomain/cut_topology.h"
 #include "core/multidomain/feature_chains.h"
 #include "core/multidomain/pierced.h"
@@ -26,15 +26,13 @@ constexpr double dip_share = 0.03;
 constexpr double smooth_dip_share = 0.3;
 /// Of the tolerance: nodes of feature edges this near to a border count as on it. Edges at them may
 /// dip as far.
-constexpr double feature_share = 0.25;
+constexpr double feature_share = 0.5;
 /// Cosine between normals of a border above which it is smooth.
 constexpr double smooth_turn = 0.8;
 /// Of the tolerance: what the straight pieces of a feature line may take.
 constexpr double chain_share = 0.2;
 /// Of the error of chords: what a chord over two of them lies deep at most, 4, and a margin.
 constexpr double crease_of_chords = 8;
-/// Of the tolerance: borders of two zones this near to each other become one.
-constexpr double shared_share = 0.5;
 /// Rounds of looking for edges that cross a border, for elements that it passes through, and of
 /// the tolerance: how deep.
 constexpr int split_rounds = 12, pierced_rounds = 12;
@@ -53,6 +51,42 @@ constexpr double doubt_share = 1;
 using Element = CutTopology::Element;
 using Weights = CutTopology::Weights;
 
+/// Points of features that were followed: those of the next are the same where they are nearer than
+/// `reach` mm, as on both edges of a step that is lower than the tolerance.
+class Followed {
+ public:
+  explicit Followed(double reach) : reach_(reach) {}
+  void add(const std::vector<Vec<3>>& points) {
+    for (const Vec<3>& x : points) cells_[cell(x)].push_back(x);
+  }
+  Vec<3> near(const Vec<3>& x) const {
+    const Cell middle = cell(x);
+    Vec<3> nearest = x;
+    double least = reach_;
+    for (int k = 0; k < 27; ++k) {
+      const auto found =
+          cells_.find({middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1});
+      if (found == cells_.end()) continue;
+      for (const Vec<3>& y : found->second)
+        if (const double d = (y - x).norm(); d < least) {
+          least = d;
+          nearest = y;
+        }
+    }
+    return nearest;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  Cell cell(const Vec<3>& x) const {
+    Cell c{};
+    for (int k = 0; k < 3; ++k) c[k] = static_cast<std::int64_t>(std::floor(x[k] / reach_));
+    return c;
+  }
+  double reach_;
+  std::map<Cell, std::vector<Vec<3>>> cells_;
+};
+
 class Cutter {
  public:
   Cutter(const SimplexMesh<3>& mesh, const MetricField<3>& metric, const Partition<3>& partition,
@@ -61,8 +95,8 @@ class Cutter {
         params_(params),
         initial_(mesh.elements),
         locator_(mesh),
-        old_nodes_(mesh.node_count()),
-        mesh_(mesh, metric, partition, params, metric_at) {}
+        mesh_(mesh, metric, partition, params, metric_at),
+        followed_(shared_share * params.tolerance) {}
 
   bool cut(int zone, const ReferenceSurface<3>& surface, const Progress& progress) {
     zone_ = zone;
@@ -79,101 +113,13 @@ class Cutter {
   }
 
   std::optional<CutMesh> result(const SimplexMesh<3>& original, const Progress& progress) const {
-    CutMesh out;
-    SimplexMesh<3>& mesh = out.mesh;
-    mesh.points = mesh_.topo.points;
-    mesh.bodies = partition_.names();
-    mesh.groups = original.groups;
-    out.metric.push_back(Metric<3>::Identity());
-    for (std::size_t n = 1; n < mesh_.metric.size(); ++n)
-      out.metric.push_back(mesh_.metric[n].full());
-    for (std::int32_t e = 0; e < mesh_.count(); ++e) {
-      if (!mesh_.topo.alive(e)) continue;
-      if (!mesh_.topo.is_virtual(e)) {
-        mesh.elements.push_back(mesh_.topo.elements[e]);
-        mesh.element_body.push_back(mesh_.topo.label[e]);
-      } else if (mesh_.is_wall(e)) {
-        const auto f = static_cast<std::size_t>(mesh_.topo.label[e]);
-        mesh.facets.push_back(Topology<3>::facet_of(mesh_.topo.elements[e]));
-        mesh.facet_group.push_back(original.facet_group[f]);
-        mesh.facet_face.push_back(original.facet_face[f]);
-      }
-    }
-    out.outer = mesh.facets.size();
-    if (!add_interfaces(mesh, progress)) return std::nullopt;
-    out.features.assign(mesh_.features.begin(), mesh_.features.end());
-    out.snapped = mesh_.moves;
-    out.added = mesh.node_count() - old_nodes_;
-    out.lost = lost_;
+    std::optional<CutMesh> out =
+        mesh_of_cut(mesh_, original, partition_, params_.threads, progress);
+    if (out) out->lost = lost_;
     return out;
   }
 
  private:
-  /// The faces between regions, once slivers of a third one between them are gone.
-  bool add_interfaces(SimplexMesh<3>& mesh, const Progress& progress) const {
-    const auto uses = face_uses<3>(mesh.elements, mesh.points.size());
-    if (!give_slivers_away(uses, mesh, progress)) return false;
-    for_each_face<3>(uses, [&](std::size_t first, std::size_t last) {
-      if (last - first != 2) return;
-      const FaceUse<3>*low = &uses[first], *high = &uses[first + 1];
-      if (mesh.element_body[low->element] == mesh.element_body[high->element]) return;
-      if (mesh.element_body[low->element] > mesh.element_body[high->element]) std::swap(low, high);
-      mesh.facets.push_back(opposite_facet<3>(mesh.elements[low->element], low->local));
-      mesh.facet_group.push_back(0);
-      mesh.facet_face.push_back(0);
-    });
-    return true;
-  }
-
-  /// Where several borders meet, elements with all nodes on them may be claimed by none of the
-  /// regions there: such islands go to the neighbors with whom they share most.
-  bool give_slivers_away(const std::vector<FaceUse<3>>& uses, SimplexMesh<3>& mesh,
-                         const Progress& progress) const {
-    std::vector<std::array<std::int32_t, 4>> beside(mesh.elements.size(), {-1, -1, -1, -1});
-    for_each_face<3>(uses, [&](std::size_t first, std::size_t last) {
-      if (last - first != 2) return;
-      beside[uses[first].element][uses[first].local] = uses[first + 1].element;
-      beside[uses[first + 1].element][uses[first + 1].local] = uses[first].element;
-    });
-    std::vector<char> lost(mesh.elements.size());
-    if (!parallel_each(lost.size(), params_.threads, progress, [&](std::size_t e) {
-          const Corners<3> p = mesh.corners(mesh.elements[e]);
-          lost[e] = partition_.region_of((p[0] + p[1] + p[2] + p[3]) / 4) != mesh.element_body[e];
-        }))
-      return false;
-    // What hangs on to its own region was counted to it on purpose.
-    std::vector<std::int32_t> front;
-    for (std::size_t e = 0; e < lost.size(); ++e)
-      if (!lost[e]) front.push_back(static_cast<std::int32_t>(e));
-    while (!front.empty()) {
-      const std::int32_t e = front.back();
-      front.pop_back();
-      for (const std::int32_t next : beside[e])
-        if (next >= 0 && lost[next] && mesh.element_body[next] == mesh.element_body[e]) {
-          lost[next] = 0;
-          front.push_back(next);
-        }
-    }
-    for (bool any = true; any;) {
-      any = false;
-      for (std::size_t e = 0; e < lost.size(); ++e) {
-        if (!lost[e]) continue;
-        std::map<std::int32_t, double> shared;
-        for (int k = 0; k < 4; ++k)
-          if (beside[e][k] >= 0 && !lost[beside[e][k]])
-            shared[mesh.element_body[beside[e][k]]] +=
-                facet_normal<3>(mesh.corners(opposite_facet<3>(mesh.elements[e], k))).norm();
-        if (shared.empty()) continue;
-        mesh.element_body[e] = std::max_element(shared.begin(), shared.end(), [](auto& a, auto& b) {
-                                 return a.second < b.second;
-                               })->first;
-        lost[e] = 0;
-        any = true;
-      }
-    }
-    return true;
-  }
-
   BorderFit fit() { return {mesh_, partition_, zone_, params_, phi_}; }
   double phi_at(const Vec<3>& x) const { return partition_.zone(zone_).distance(x); }
   /// The element that contains x, seen from the place of x in the mesh that was given.
@@ -230,15 +176,19 @@ class Cutter {
         feature_chains(with_creases(surface, deep), chain_share * params_.tolerance);
     for (std::int32_t c : surface.corners) {
       if (progress.cancelled()) return false;
-      const Vec<3> x = shared(surface.points[c]);
+      const Vec<3> x = followed_.near(shared(surface.points[c]));
       if (reachable(x)) place(x);
+      followed_.add({x});
     }
     for (std::size_t i = 0; i < chains.size(); ++i) {
       NodeId reached = 0;
-      for (std::size_t k = 0; k + 1 < chains[i].size(); ++k) {
+      std::vector<Vec<3>> points;
+      for (const Vec<3>& x : chains[i]) points.push_back(followed_.near(shared(x)));
+      for (std::size_t k = 0; k + 1 < points.size(); ++k) {
         if (progress.cancelled()) return false;
-        reached = follow(shared(chains[i][k]), shared(chains[i][k + 1]), reached);
+        reached = follow(points[k], points[k + 1], reached);
       }
+      followed_.add(points);
       progress.report(static_cast<double>(i + 1) / static_cast<double>(chains.size()));
     }
     return true;
@@ -432,15 +382,15 @@ class Cutter {
     return true;
   }
 
+  double slack(NodeId n) const {
+    return static_cast<std::size_t>(n) < slack_.size() ? slack_[n] : 0;
+  }
   /// Where the edge crosses the border, as a share of it.
   std::optional<double> crossing(NodeId a, NodeId b) const {
     const Vec<3> e = at(b) - at(a);
     const double length = e.norm();
     if (std::abs(phi_[a]) + std::abs(phi_[b]) >= length && phi_[a] * phi_[b] >= 0)
       return std::nullopt;
-    const auto slack = [&](NodeId n) {
-      return static_cast<std::size_t>(n) < slack_.size() ? slack_[n] : 0;
-    };
     const double dip = dip_share * params_.tolerance + std::max(slack(a), slack(b));
     double deep = std::numeric_limits<double>::infinity();
     double t0 = 0, f0 = phi_[a], t1 = 1, f1 = phi_[b];
@@ -639,7 +589,13 @@ class Cutter {
       if (std::abs(in.mean) > std::abs(most)) side[i] = in.mean < 0;
       const bool feature =
           std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) { return mesh_.locked[n] != 0; });
-      const double limit = feature ? dip_share : doubt_share;
+      // A slit between the border and that of another zone that it became one with.
+      const Corners<3> p = mesh_.corners(nodes);
+      const bool closed =
+          feature && most == 0 &&
+          std::any_of(nodes.begin(), nodes.end(), [&](NodeId n) { return slack(n) > mesh_.on; }) &&
+          partition_.region_of((p[0] + p[1] + p[2] + p[3]) / 4) == partition_.background();
+      const double limit = feature && !closed ? dip_share : doubt_share;
       doubt[i] = std::max(in.most, std::abs(most)) <= limit * params_.tolerance;
     });
     std::vector<std::int32_t> doubtful;
@@ -670,8 +626,8 @@ class Cutter {
   const CutParams& params_;
   const std::vector<Element>& initial_;
   ElementLocator<3> locator_;
-  std::size_t old_nodes_;
   CutTopology mesh_;
+  Followed followed_;
   int zone_ = 0;
   std::vector<double> phi_;    ///< [node] of the zone that is being cut
   std::vector<double> slack_;  ///< [node that was there before edges were split] how far off it is

@@ -11,6 +11,9 @@
 
 namespace lamella {
 
+/// Of the tolerance: borders of two zones this near to each other become one.
+inline constexpr double shared_share = 0.5;
+
 struct CutParams {
   double tolerance = 0;  ///< mm, > 0: how far an interface may lie from the borders
   double snap = 0.4;     ///< of the size across: nodes nearer to a border are moved onto it

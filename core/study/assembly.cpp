@@ -13,8 +13,8 @@
 #include "core/multidomain/balance.h"
 #include "core/multidomain/chord_metric.h"
 #include "core/multidomain/exact_interface.h"
+#include "core/multidomain/interface_cut.h"
 #include "core/multidomain/interface_metric.h"
-#include "core/natural/boundary_distance.h"
 #include "core/optimize/adapt.h"
 #include "core/study/assembly_members.h"
 #include "core/study/join.h"
@@ -34,7 +34,8 @@ constexpr int kReportDepth = 6;     // bisections for the figures that are repor
 constexpr double kSlope = 1;        // growth of sizes across fuzzy borders with the distance
 constexpr double kGrowth = 0.7;     // of a neighbor's sizes with the distance in its metric: ln 2
 constexpr double kOffBorder = 0.8;  // of the tolerance, that nodes may leave borders for volumes
-constexpr double kUnseen = 0.01;    // of the tolerance: what lies deeper in others is no border
+constexpr int kReturns = 4;       // times that nodes which left borders go back where it is too far
+constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
 
 /// Regions of fuzzy interfaces are names of elements: nothing is to be held at their steps.
 SimplexMesh<3> as_one_body(SimplexMesh<3> mesh) {
@@ -149,19 +150,8 @@ class AssemblyLoop {
       if (Result<void> balanced = balance(progress); !balanced) return balanced.error();
     for (std::size_t m = 0; exact_ && m < of_.members.size(); ++m) {
       if (of_.body_of[m] < 0) continue;
-      const Member& member = of_.members[m];
       const SimplexMesh<3> body = extract_body(current_.mesh, of_.body_of[m]);
-      if (body.elements.empty()) continue;
-      of_.outcomes[m].mesh_volume = volume_of(body);
-      Covered covered;
-      if (member.bounds)
-        covered = [&](const Vec<3>& x) {
-          return of_.beyond(static_cast<int>(m), x) - kUnseen * of_.chord_tolerance;
-        };
-      Result<BoundaryDistance> distance =
-          boundary_distance(body, member.walls(), options_.threads, progress, covered);
-      if (!distance) return distance.error();
-      of_.outcomes[m].boundary_distance = *distance;
+      if (!body.elements.empty()) of_.outcomes[m].mesh_volume = volume_of(body);
     }
     if (exact_) {
       std::vector<BodyOutcome> kept;
@@ -185,15 +175,28 @@ class AssemblyLoop {
     return volume;
   }
 
-  /// The last touch to exact borders: what was adapted again would go back onto them.
-  /// Qualities are those of the mesh that is handed out. Errors: cancelled.
+  /// The last touch to exact borders: what was adapted again would go back onto them. Where that
+  /// takes a body too far from its surface nodes go back at once. Qualities are those of the mesh
+  /// that is handed out. Errors: cancelled.
   Result<void> balance(const Progress& progress) {
     if (std::exchange(balanced_, true)) return {};
     MeshState state = current_;
-    const std::size_t moved =
-        balance_borders(state.mesh, *of_.partition, first_face_, kOffBorder * of_.mesh_tolerance,
-                        options_.threads, progress);
-    if (moved == 0 || !validate<3>(state.mesh).ok()) return {};
+    const std::size_t moved = balance_borders(
+        state.mesh, *of_.partition, first_face_,
+        {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance, of_.domain.get(), options_.threads},
+        progress);
+    for (int i = 0;; ++i) {
+      Result<std::vector<Vec<3>>> far =
+          of_.measure_distances(state.mesh, options_.threads, progress);
+      if (!far) return far.error();
+      if (i == kReturns || !put_back(state.mesh, current_.mesh.points, *far, of_.chord_tolerance))
+        break;
+    }
+    if (moved == 0) return {};
+    if (!validate<3>(state.mesh).ok()) {
+      const auto before = of_.measure_distances(current_.mesh, options_.threads, progress);
+      return before ? Result<void>{} : before.error();
+    }
     const Result<IterationRecord> measured = measure(state, progress);
     if (!measured) return measured.error();
     IterationRecord& last = records_.back();
@@ -341,24 +344,36 @@ class AssemblyLoop {
     return member.correction.apply(x, member.detector->at(x, member.natural).metric,
                                    member.natural.h_min);
   }
+  /// Whether the region is thinner around x than what a mesh within the tolerance has to resolve:
+  /// the slit between a hole and the screw in it, each with triangles of its own.
+  bool closes(int region, const Vec<3>& x) const {
+    if (of_.full) return false;  // nothing is between cells
+    const Member& member = of_.members[region];
+    return member.detector->at(x, member.natural).thickness < shared_share * of_.mesh_tolerance;
+  }
 
   /// The natural metric of the region that x lies in, refined towards the sizes beyond its borders
   /// as they come near: M_b / (1 + l ln 2)^2 at the distance l in the metric of the neighbor.
+  /// Regions ask for nothing where they close.
   Metric<3> natural_at(const Vec<3>& x) const {
     const int own = of_.partition->region_of(x);
-    Metric<3> metric = natural_in(own, x);
+    const bool closed = closes(own, x);
+    std::optional<Metric<3>> metric;
+    if (!closed) metric = natural_in(own, x);
     const double beside = 0.1 * of_.mesh_tolerance;
     std::vector<Border<3>> near;
-    of_.partition->borders(x, 3 * sizes<3>(metric)[0] / kGrowth, near);
+    of_.partition->borders(x, metric ? 3 * sizes<3>(*metric)[0] / kGrowth : 2 * of_.mesh_tolerance,
+                           near);
     for (const auto& [zone, border] : near) {
       const Vec<3> there = x + (border.distance + beside) * border.normal;
       const int other = of_.partition->region_of(there);
-      if (other == own || (exact_ && of_.body_of[other] < 0)) continue;
+      if (other == own || (exact_ && of_.body_of[other] < 0) || closes(other, there)) continue;
       const Metric<3> beyond = natural_in(other, there);
       const double length = border.distance * std::sqrt(border.normal.dot(beyond * border.normal));
-      metric = intersect<3>(metric, beyond / std::pow(1 + kGrowth * length, 2));
+      const Metric<3> here = beyond / std::pow(1 + kGrowth * length, 2);
+      metric = metric ? intersect<3>(*metric, here) : here;
     }
-    return metric;
+    return metric ? *metric : natural_in(own, x);
   }
 
   /// What bounds a body towards a dropped one is its wall.

@@ -11,9 +11,11 @@
 #include "core/mesh/boundary.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/multidomain/overlap.h"
+#include "core/natural/boundary_distance.h"
 #include "core/study/domain.h"
 #include "core/study/first_mesh.h"
 #include "core/study/join.h"
+#include "core/study/measure.h"
 #include "core/study/request.h"
 #include "core/study/zone_surface.h"
 
@@ -24,6 +26,7 @@ namespace {
 constexpr int kCells = 6;          // of the first mesh of a box, along its longest side
 constexpr double kOfLayer = 0.25;  // size across a fuzzy border, of the layer there
 constexpr double kMinGuardShare = 0.3;
+constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
 
 Box<3> box_of(const ReferenceSurface<3>& surface) {
   Box<3> box;
@@ -105,7 +108,7 @@ class Layout {
       member.endless = std::holds_alternative<ZoneHalfSpace>(zone.shape) ||
                        std::holds_alternative<ZoneCell>(zone.shape);
       member.part.surface = std::move(*surface);
-      member.part.cad_volume = zone_volume(zone, member.part.surface);
+      member.part.cad_volume = zone_volume(zone, member.part.surface, hull_);
       assembly_.members.push_back(std::move(member));
       // There is nothing between the cells.
       assembly_.full = assembly_.full || std::holds_alternative<ZoneCell>(zone.shape);
@@ -325,6 +328,28 @@ class Layout {
 
 double Assembly::beyond(int region, const Vec<3>& x) const {
   return std::max(partition->distance(region, x), domain->at(x).distance);
+}
+
+Result<std::vector<Vec<3>>> Assembly::measure_distances(const SimplexMesh<3>& mesh, int threads,
+                                                        const Progress& progress) {
+  std::vector<Vec<3>> too_far;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (body_of[m] < 0) continue;
+    const SimplexMesh<3> body = extract_body(mesh, body_of[m]);
+    if (body.elements.empty()) continue;
+    Covered covered;
+    if (members[m].bounds)
+      covered = [&](const Vec<3>& x) {
+        return beyond(static_cast<int>(m), x) - kUnseen * chord_tolerance;
+      };
+    const Result<BoundaryDistance> distance =
+        boundary_distance(body, members[m].walls(), threads, progress, covered);
+    if (!distance) return distance.error();
+    for (const FarthestPoint& far : {distance->to_surface, distance->from_surface})
+      if (far.distance > chord_tolerance) too_far.push_back(far.place);
+    outcomes[m].boundary_distance = *distance;
+  }
+  return too_far;
 }
 
 ReferenceSurface<3> Assembly::borders_of(const Member& member) const {

@@ -50,6 +50,10 @@ struct Assembly {
 
   /// At most the distance of x to what the region is in the mesh, mm; 0 or less within.
   double beyond(int region, const Vec<3>& x) const;
+  /// Sets the distances between the bodies of an exact mesh and their surfaces in the outcomes, and
+  /// tells the farthest places beyond the tolerance. Errors: cancelled.
+  Result<std::vector<Vec<3>>> measure_distances(const SimplexMesh<3>& mesh, int threads,
+                                                const Progress& progress);
   /// What holds the borders of the member in the mesh: its surface, of an endless one the part of
   /// it that is within the domain.
   ReferenceSurface<3> borders_of(const Member& member) const;

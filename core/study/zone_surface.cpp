@@ -131,6 +131,26 @@ TriangleSoup ball(const ZoneBall& b, double tolerance) {
   return soup;
 }
 
+/// Volume between the facets that are chords of the cylinder's side and the side, mm^3.
+double beyond_chords(const ReferenceSurface<3>& surface, const ZoneCylinder& c) {
+  const Vec<3> axis = (c.to - c.from).normalized();
+  const auto outward = [&](const Vec<3>& x) -> Vec<3> {
+    const Vec<3> from = x - c.from;
+    return from - from.dot(axis) * axis;
+  };
+  double volume = 0;
+  for (const auto& f : surface.facets) {
+    const std::array<Vec<3>, 3> p{surface.points[f[0]], surface.points[f[1]], surface.points[f[2]]};
+    const Vec<3> normal = (p[1] - p[0]).cross(p[2] - p[0]);
+    const double area = normal.norm() / 2, apart = normal.dot(p[0] - c.from) / (2 * area);
+    // Its planes are those of at least 12 chords (planes_of).
+    if (std::abs(normal.dot(axis)) > 1e-9 * area || apart < 0.96 * c.radius) continue;
+    for (int k = 0; k < 3; ++k)
+      volume += area / 3 * (c.radius - outward((p[k] + p[(k + 1) % 3]) / 2).norm());
+  }
+  return volume;
+}
+
 }  // namespace
 
 Result<ReferenceSurface<3>> zone_surface(const StudyZone& zone, const std::vector<StudyZone>& all,
@@ -169,13 +189,17 @@ Result<ReferenceSurface<3>> zone_surface(const StudyZone& zone, const std::vecto
   return surface;
 }
 
-double zone_volume(const StudyZone& zone, const ReferenceSurface<3>& surface) {
+double zone_volume(const StudyZone& zone, const ReferenceSurface<3>& surface,
+                   const StudyZone& domain) {
   constexpr double pi = std::numbers::pi;
   if (const auto* b = std::get_if<ZoneBall>(&zone.shape))
     return 4 * pi / 3 * b->radius * b->radius * b->radius;
   if (const auto* c = std::get_if<ZoneCylinder>(&zone.shape))
     return pi * c->radius * c->radius * (c->to - c->from).norm();
-  return enclosed_measure(surface);
+  const bool ends = std::holds_alternative<ZoneHalfSpace>(zone.shape) ||
+                    std::holds_alternative<ZoneCell>(zone.shape);
+  const auto* hull = std::get_if<ZoneCylinder>(&domain.shape);
+  return enclosed_measure(surface) + (ends && hull ? beyond_chords(surface, *hull) : 0);
 }
 
 }  // namespace lamella

@@ -12,7 +12,9 @@ namespace lamella {
 Result<ReferenceSurface<3>> zone_surface(const StudyZone& zone, const std::vector<StudyZone>& all,
                                          const StudyZone& domain, double tolerance);
 
-/// Volume of the zone, mm^3, by its formula; of one that ends with the domain that of `surface`.
-double zone_volume(const StudyZone& zone, const ReferenceSurface<3>& surface);
+/// Volume of the zone, mm^3, by its formula; of one that ends with the domain that of `surface`,
+/// with what lies between its chords and the side of a domain that is a cylinder.
+double zone_volume(const StudyZone& zone, const ReferenceSurface<3>& surface,
+                   const StudyZone& domain);
 
 }  // namespace lamella

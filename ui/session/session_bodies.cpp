@@ -4,7 +4,6 @@
 
 #include "core/study/moved_faces.h"
 #include "core/study/study_file.h"
-#include "core/study/zone_surface.h"
 #include "ui/commands/edit_study.h"
 #include "ui/session/session.h"
 #include "ui/session/zone_shapes.h"
@@ -69,7 +68,7 @@ void Session::take_zone_shapes() {
       for (std::size_t z = 0; z < made.zones.size(); ++z) {
         Part& shape = (*all)[parts_->size() + z];
         shape.surface = std::move(made.zones[z]);
-        shape.cad_volume = zone_volume(study->zones[z], shape.surface);
+        shape.cad_volume = made.volumes[z];
       }
       shapes_ = all;
       hull_ = std::move(made.hull);

@@ -32,6 +32,7 @@ ZoneShapes zone_shapes(const Study& study, const std::vector<Part>& parts,
   for (const StudyZone& zone : study.zones) {
     if (progress.cancelled()) break;
     Result<ReferenceSurface<3>> surface = zone_surface(zone, study.zones, hull, tolerance);
+    shapes.volumes.push_back(surface ? zone_volume(zone, *surface, hull) : 0);
     shapes.zones.push_back(surface ? std::move(*surface) : ReferenceSurface<3>{});
   }
   return shapes;
