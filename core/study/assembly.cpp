@@ -335,45 +335,49 @@ class AssemblyLoop {
     return accept(std::move(adapted->mesh), start, progress.portion(0.7, 1));
   }
 
-  Metric<3> natural_in(int region, const Vec<3>& x) const {
+  struct InRegion {
+    Metric<3> metric;
+    /// The region is thinner there than what a mesh within the tolerance has to resolve: the slit
+    /// between a hole and the screw in it, each with triangles of its own.
+    bool closes;
+  };
+  InRegion natural_in(int region, const Vec<3>& x) const {
     const Member& member = of_.members[region];
-    return member.sizing.apply(
-        x, member.of_flow.apply(x, learnt_in(member, x), flow_h_min(study_, member.natural.h_min)));
+    const auto found = member.detector->at(x, member.natural);
+    const Metric<3> learnt = member.correction.apply(x, found.metric, member.natural.h_min);
+    const Metric<3> metric = member.sizing.apply(
+        x, member.of_flow.apply(x, learnt, flow_h_min(study_, member.natural.h_min)));
+    // Nothing is between cells.
+    return {metric, !of_.full && found.thickness < shared_share * of_.mesh_tolerance};
   }
   static Metric<3> learnt_in(const Member& member, const Vec<3>& x) {
     return member.correction.apply(x, member.detector->at(x, member.natural).metric,
                                    member.natural.h_min);
   }
-  /// Whether the region is thinner around x than what a mesh within the tolerance has to resolve:
-  /// the slit between a hole and the screw in it, each with triangles of its own.
-  bool closes(int region, const Vec<3>& x) const {
-    if (of_.full) return false;  // nothing is between cells
-    const Member& member = of_.members[region];
-    return member.detector->at(x, member.natural).thickness < shared_share * of_.mesh_tolerance;
-  }
-
   /// The natural metric of the region that x lies in, refined towards the sizes beyond its borders
   /// as they come near: M_b / (1 + l ln 2)^2 at the distance l in the metric of the neighbor.
   /// Regions ask for nothing where they close.
   Metric<3> natural_at(const Vec<3>& x) const {
     const int own = of_.partition->region_of(x);
-    const bool closed = closes(own, x);
-    std::optional<Metric<3>> metric;
-    if (!closed) metric = natural_in(own, x);
+    const InRegion here = natural_in(own, x);
+    bool asks = !here.closes;
+    Metric<3> metric = here.metric;
     const double beside = 0.1 * of_.mesh_tolerance;
     std::vector<Border<3>> near;
-    of_.partition->borders(x, metric ? 3 * sizes<3>(*metric)[0] / kGrowth : 2 * of_.mesh_tolerance,
+    of_.partition->borders(x, asks ? 3 * sizes<3>(metric)[0] / kGrowth : 2 * of_.mesh_tolerance,
                            near);
     for (const auto& [zone, border] : near) {
       const Vec<3> there = x + (border.distance + beside) * border.normal;
       const int other = of_.partition->region_of(there);
-      if (other == own || (exact_ && of_.body_of[other] < 0) || closes(other, there)) continue;
-      const Metric<3> beyond = natural_in(other, there);
+      if (other == own || (exact_ && of_.body_of[other] < 0)) continue;
+      const auto [beyond, closes] = natural_in(other, there);
+      if (closes) continue;
       const double length = border.distance * std::sqrt(border.normal.dot(beyond * border.normal));
-      const Metric<3> here = beyond / std::pow(1 + kGrowth * length, 2);
-      metric = metric ? intersect<3>(*metric, here) : here;
+      const Metric<3> from_there = beyond / std::pow(1 + kGrowth * length, 2);
+      metric = asks ? intersect<3>(metric, from_there) : from_there;
+      asks = true;
     }
-    return metric ? *metric : natural_in(own, x);
+    return metric;
   }
 
   /// What bounds a body towards a dropped one is its wall.

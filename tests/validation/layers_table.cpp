@@ -56,7 +56,7 @@ std::string row(const Named& named, const std::vector<Part>& parts, int n) {
                                       {std::shared_ptr<const VolumeMesher>(topological_mesher()),
                                        std::shared_ptr<const VolumeMesher>(netgen_mesher())});
   std::string line = "| " + named.name + " | " + std::to_string(n) + " | ";
-  if (!outcome) return line + outcome.error().message + " | | | | | | | |\n";
+  if (!outcome) return line + outcome.error().message + " | | | | | | | | |\n";
   const std::vector<IterationRecord>& records = outcome->records;
   const IterationRecord& last = records.back();
   const auto change = [&](double a, double b) { return percent((b - a) / a); };
@@ -70,6 +70,7 @@ std::string row(const Named& named, const std::vector<Part>& parts, int n) {
   return line + short_number(layers.p5, 3) + " / " + short_number(layers.p50, 3) + " / " +
          short_number(layers.p95, 3) + " | " + percent(layers.share_reached) + " | " +
          grouped(below) + " | " + short_number(last.layers_by_nodes, 3) + " | " +
+         short_number(last.quality_mean, 2) + " / " + short_number(last.quality_min, 2) + " | " +
          short_number(outcome->seconds, 2) + " |\n";
 }
 
@@ -87,8 +88,9 @@ Result<void> regenerate(const fs::path& docs, const std::optional<fs::path>& cad
 
   std::string table =
       "| part | n | iterations | nodes | last change of nodes, % | of layers, % | layers measured, "
-      "5 / 50 / 95 % | area with n or more, % | places below n | (B.2) | s |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "5 / 50 / 95 % | area with n or more, % | places below n | (B.2) | quality mean / worst | s "
+      "|\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Named& part : parts) {
     Result<std::vector<Part>> bodies = load_parts(part.file);
     if (!bodies) {
