@@ -103,11 +103,6 @@ void ChordField::Level::add(const std::array<Vec<3>, 3>& facet, const Curved& as
   curved.push_back(asked);
 }
 
-void ChordField::Levels::add(const std::array<Vec<3>, 3>& facet, Curved asked) {
-  for (double& size : asked.size) size = std::max(size, smallest);
-  (*this)[std::ilogb(asked.size[0])].add(facet, asked);
-}
-
 void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
                              double tolerance, double largest, int threads,
                              const Progress& progress, Levels& levels) {
@@ -179,7 +174,7 @@ void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition
     if (asked.size[0] < largest) found[i] = asked;
   });
   for (std::size_t i = 0; i < pieces.size(); ++i)
-    if (found[i]) levels.add(pieces[i].facet, *found[i]);
+    if (found[i]) levels[std::ilogb(found[i]->size[0])].add(pieces[i].facet, *found[i]);
 }
 
 ChordField::ChordField(const Partition<3>& partition,
@@ -192,7 +187,6 @@ ChordField::ChordField(const Partition<3>& partition,
     for (const Vec<3>& p : s.points) all.add(p);
   const double largest = (all.hi - all.lo).norm();
   Levels levels;
-  levels.smallest = params.smallest;
   for (std::size_t z = 0; z < surfaces.size(); ++z) {
     const ReferenceSurface<3>& s = surfaces[z];
     std::vector<std::optional<Curved>> found(s.facets.size());
@@ -211,14 +205,17 @@ ChordField::ChordField(const Partition<3>& partition,
     });
     for (std::size_t f = 0; f < found.size(); ++f) {
       if (!found[f] || !(found[f]->size[0] < flat_share * largest)) continue;
-      levels.add({s.points[s.facets[f][0]], s.points[s.facets[f][1]], s.points[s.facets[f][2]]},
-                 *found[f]);
+      levels[std::ilogb(found[f]->size[0])].add(
+          {s.points[s.facets[f][0]], s.points[s.facets[f][1]], s.points[s.facets[f][2]]},
+          *found[f]);
     }
     add_details(s, partition, tolerance, detail_share * largest, params.threads,
                 own.portion(0.5, 1), levels);
   }
   for (auto& [power, level] : levels) {
-    level.least = std::ldexp(1, power);
+    for (Curved& asked : level.curved)
+      for (double& size : asked.size) size = std::max(size, params.smallest);
+    level.least = std::max(std::ldexp(1, power), params.smallest);
     level.surface.faces.resize(1);
     level.locator = std::make_unique<const Locator<3>>(level.surface);
     level.surface = {};

@@ -55,10 +55,7 @@ class ChordField {
     void add(const std::array<Vec<3>, 3>& facet, const Curved& asked);
   };
   /// By the power of two of the smallest size.
-  struct Levels : std::map<int, Level> {
-    double smallest = 0;  ///< mm
-    void add(const std::array<Vec<3>, 3>& facet, Curved asked);
-  };
+  using Levels = std::map<int, Level>;
   static void add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
                           double tolerance, double largest, int threads, const Progress& progress,
                           Levels& levels);

@@ -280,7 +280,7 @@ bool StarOptimizer<D>::still_known(NodeId n, const Apex& apex) const {
 template <int D>
 void StarOptimizer<D>::take_if_allowed(Apex apex, const BoundarySite& site) {
   if (site.boundary && (!topology_allows(apex, site) || !boundary_allows(apex, site))) return;
-  if (apex.node == 0 && metric_function_ && sweep_.attention < 1 && !still_known(moves_, apex)) {
+  if (apex.node == 0 && metric_function_ && sweep_.attention < 1 && !still_known(moving_, apex)) {
     apex = new_point(apex.point, Packed<D>::from(metric_function_(apex.point)));
     apex.asked = true;
     if (!beats(0, apex.point, apex.averaged)) return;
@@ -346,7 +346,7 @@ bool StarOptimizer<D>::process_node(NodeId s) {
   open_cavity(topo_.around.of(s), s, s);
   BoundarySite site;
   if (!node_site(s, site)) return false;
-  moves_ = s;
+  moving_ = s;
   start_from_current();
 
   const double near4 = fourth_power(sweep_.collapse_below);
@@ -377,7 +377,7 @@ bool StarOptimizer<D>::process_edge(NodeId s, NodeId n, bool is_long) {
   open_cavity(star_, s, n);
   BoundarySite site;
   if (!edge_site(s, n, site)) return false;
-  moves_ = 0;
+  moving_ = 0;
   start_from_current();
   if (!site.boundary) {
     for (NodeId v : link_) offer(v, site);

@@ -175,7 +175,7 @@ class StarOptimizer {
   Apex best_apex_;
   bool found_ = false;
   std::uint64_t dice_ = 0;
-  NodeId moves_ = 0;  ///< takes the place of a new point; 0: a new node does
+  NodeId moving_ = 0;  ///< whose star is open; 0 for that of an edge
   struct Birth {
     Element nodes;
     std::int32_t label;

@@ -34,8 +34,7 @@ constexpr int kReportDepth = 6;     // bisections for the figures that are repor
 constexpr double kSlope = 1;        // growth of sizes across fuzzy borders with the distance
 constexpr double kGrowth = 0.7;     // of a neighbor's sizes with the distance in its metric: ln 2
 constexpr double kOffBorder = 0.8;  // of the tolerance, that nodes may leave borders for volumes
-constexpr int kReturns = 4;       // times that nodes which left borders go back where it is too far
-constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
+constexpr int kReturns = 4;  // times that nodes which left borders go back where it is too far
 
 /// Regions of fuzzy interfaces are names of elements: nothing is to be held at their steps.
 SimplexMesh<3> as_one_body(SimplexMesh<3> mesh) {
@@ -239,7 +238,8 @@ class AssemblyLoop {
     MetricField<3> natural(body.points.size(), Metric<3>::Identity());
     const auto ask = [&](std::size_t i) {
       const Vec<3>& x = body.points[i + 1];
-      natural[i + 1] = member.sizing.apply(x, learnt_in(member, x));
+      natural[i + 1] = member.sizing.apply(
+          x, learnt_from(member, x, member.detector->at(x, member.natural).metric));
     };
     if (!parallel_each(body.node_count(), options_.threads, progress.portion(0, 0.5), ask))
       return cancelled_error();
@@ -344,16 +344,16 @@ class AssemblyLoop {
   InRegion natural_in(int region, const Vec<3>& x) const {
     const Member& member = of_.members[region];
     const auto found = member.detector->at(x, member.natural);
-    const Metric<3> learnt = member.correction.apply(x, found.metric, member.natural.h_min);
-    const Metric<3> metric = member.sizing.apply(
-        x, member.of_flow.apply(x, learnt, flow_h_min(study_, member.natural.h_min)));
+    const Metric<3> metric =
+        member.sizing.apply(x, member.of_flow.apply(x, learnt_from(member, x, found.metric),
+                                                    flow_h_min(study_, member.natural.h_min)));
     // Nothing is between cells.
     return {metric, !of_.full && found.thickness < shared_share * of_.mesh_tolerance};
   }
-  static Metric<3> learnt_in(const Member& member, const Vec<3>& x) {
-    return member.correction.apply(x, member.detector->at(x, member.natural).metric,
-                                   member.natural.h_min);
+  static Metric<3> learnt_from(const Member& member, const Vec<3>& x, const Metric<3>& natural) {
+    return member.correction.apply(x, natural, member.natural.h_min);
   }
+
   /// The natural metric of the region that x lies in, refined towards the sizes beyond its borders
   /// as they come near: M_b / (1 + l ln 2)^2 at the distance l in the metric of the neighbor.
   /// Regions ask for nothing where they close.

@@ -14,7 +14,7 @@ namespace lamella {
 /// unit. LayerCorrection does the rest.
 inline constexpr double kAskedFiner = 1.02;
 
-/// Layers that the average place is to have, of n, so that the poor ones have n too.
+/// Layers that the average place is to have, of n, so that the poor ones have nearly n.
 inline constexpr double kWantedLayers = 1.08;
 
 /// What is around the bodies in one mesh of all, where the domain is no body itself.

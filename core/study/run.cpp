@@ -83,6 +83,7 @@ class BodyLoop {
     outcome_.notes.insert(outcome_.notes.end(), first->notes.begin(), first->notes.end());
     detector_ = make_detector(options_.detector, part_.surface);
     chords_ = chords_of(study_, part_, progress.portion(0.7, 0.72));
+    if (progress.cancelled()) return cancelled_error();
     if (Result<void> enough = look_ahead(first->mesh, progress.portion(0.72, 0.8)); !enough)
       return enough;
     return accept(std::move(first->mesh), start, progress.portion(0.8, 1));
