@@ -13,6 +13,7 @@
 #include "core/natural/layer_correction.h"
 #include "core/natural/layers.h"
 #include "core/natural/neighborhood.h"
+#include "core/natural/spread_metric.h"
 #include "core/natural/thickness_detector.h"
 #include "core/optimize/adapt.h"
 #include "core/sizing/sizing_field.h"
@@ -168,7 +169,7 @@ class BodyLoop {
     const auto ask = [&](std::size_t i) {
       const Vec<3>& x = current_.mesh.points[i + 1];
       natural[i + 1] = sizing_.apply(
-          x, chords_->at(correction_.apply(x, natural_at_nodes_[i + 1], natural_.h_min), x));
+          x, of_part(x, correction_.apply(x, natural_at_nodes_[i + 1], natural_.h_min)));
     };
     if (!parallel_each(current_.mesh.node_count(), options_.threads, progress.portion(0, 0.02),
                        ask))
@@ -259,7 +260,12 @@ class BodyLoop {
 
   /// The metric asked where the natural one, corrected for the layers or not, is `natural`.
   Metric<3> sized(const Vec<3>& x, const Metric<3>& natural) const {
-    return sizing_.apply(x, of_flow_.apply(x, chords_->at(natural, x), flow_h_min_));
+    return sizing_.apply(x, of_flow_.apply(x, of_part(x, natural), flow_h_min_));
+  }
+
+  /// The same without what the flow and the user ask.
+  Metric<3> of_part(const Vec<3>& x, const Metric<3>& natural) const {
+    return spread_.at(chords_->at(natural, x), x);
   }
 
   /// What the boundary layers asked by hand came to.
@@ -340,15 +346,23 @@ class BodyLoop {
     next.metric = std::move(field->metric);
     if (!of_flow_.empty()) natural_at_nodes_ = next.metric;
     std::vector<char> by_hand(next.mesh.points.size(), 0);
+    MetricField<3> unspread(next.mesh.points.size());
     const auto correct = [&](std::size_t i) {
       const Vec<3>& x = next.mesh.points[i + 1];
-      const Metric<3> alone = chords_->at(next.metric[i + 1], x);
+      unspread[i + 1] = chords_->at(next.metric[i + 1], x);
+      const Metric<3> alone = spread_.at(unspread[i + 1], x);
       next.metric[i + 1] = sizing_.apply(x, of_flow_.apply(x, alone, flow_h_min_));
       by_hand[i + 1] = next.metric[i + 1] != alone;
     };
-    if (!parallel_each(next.mesh.node_count(), options_.threads, progress.portion(0.55, 0.6),
+    if (!parallel_each(next.mesh.node_count(), options_.threads, progress.portion(0.55, 0.58),
                        correct))
       return cancelled_error();
+    if (!outcome_.records.empty()) {
+      // The first mesh is too coarse to tell where sizes change.
+      spread_ = SpreadMetric::from(next.mesh.points, unspread, {.threads = options_.threads},
+                                   progress.portion(0.58, 0.6));
+      if (progress.cancelled()) return cancelled_error();
+    }
     next.thickness = std::move(field->thickness);
     Result<IterationRecord> record = measure(next, progress.portion(0.6, 0.75));
     if (!record) return record.error();
@@ -433,6 +447,7 @@ class BodyLoop {
   std::unique_ptr<const Part> grouped_;
   std::unique_ptr<const ChordField> chords_;
   LayerCorrection correction_;
+  SpreadMetric spread_;
   CorrectionField of_flow_;
   MetricField<3> natural_at_nodes_;  ///< of the current mesh, where a flow will correct it
   MeshForecast forecast_;
