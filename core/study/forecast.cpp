@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 #include "core/natural/natural_metric.h"
+#include "core/natural/spread_metric.h"
 #include "core/study/first_mesh.h"
 #include "core/study/flow_round.h"
 #include "core/study/request.h"
@@ -16,6 +19,35 @@ namespace {
 constexpr double kFlowBytesANode = 3000;
 /// The same of a facet while it is filled (a ribbed tray of 72,000 triangles: 740 and 3,100).
 constexpr double kGenerateBytesAFacet = 1000, kNetgenBytesAFacet = 4000;
+
+/// What was asked so far, from any thread.
+class Asked {
+ public:
+  const Metric<3>* find(const Vec<3>& x) const {
+    const std::scoped_lock lock(mutex_);
+    const auto at = metrics_.find(key(x));
+    return at == metrics_.end() ? nullptr : &at->second;
+  }
+  Metric<3> keep(const Vec<3>& x, const Metric<3>& metric) {
+    const std::scoped_lock lock(mutex_);
+    return metrics_.emplace(key(x), metric).first->second;
+  }
+  SpreadMetric spread(int threads, const Progress& progress) const {
+    std::vector<Vec<3>> points{Vec<3>::Zero()};
+    MetricField<3> metrics{Metric<3>::Identity()};
+    for (const auto& [x, metric] : metrics_) {
+      points.emplace_back(x[0], x[1], x[2]);
+      metrics.push_back(metric);
+    }
+    return SpreadMetric::from(points, metrics, {.threads = threads}, progress);
+  }
+
+ private:
+  static std::array<double, 3> key(const Vec<3>& x) { return {x[0], x[1], x[2]}; }
+
+  mutable std::mutex mutex_;
+  std::map<std::array<double, 3>, Metric<3>> metrics_;
+};
 
 }  // namespace
 
@@ -54,10 +86,19 @@ Result<SizingForecast> forecast_body(const Study& study, const SimplexMesh<3>& f
                                      const SizingField& sizing, const Progress& progress) {
   ForecastParams params;
   params.threads = study.options.threads;
-  const auto asked = [&](const Vec<3>& x) -> Metric<3> {
-    return chords.at(kWantedLayers * kWantedLayers * natural(x), x);
+  // Where sizes change is not known before the metric was asked all over the body.
+  Asked asked;
+  const auto alone = [&](const Vec<3>& x) -> Metric<3> {
+    if (const Metric<3>* known = asked.find(x)) return *known;
+    return asked.keep(x, chords.at(kWantedLayers * kWantedLayers * natural(x), x));
   };
-  return forecast_mesh(first, asked, sizing, params, progress);
+  const Result<SizingForecast> unspread =
+      forecast_mesh(first, alone, sizing, params, progress.portion(0, 0.7));
+  if (!unspread) return unspread.error();
+  const SpreadMetric spread = asked.spread(study.options.threads, progress.portion(0.7, 0.75));
+  return forecast_mesh(
+      first, [&](const Vec<3>& x) { return spread.at(alone(x), x); }, sizing, params,
+      progress.portion(0.75, 1));
 }
 
 Result<std::vector<FirstMesh>> first_meshes(
