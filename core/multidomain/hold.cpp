@@ -62,4 +62,26 @@ Vec<3> onto_borders(const Partition<3>& partition, int zones, Vec<3> x, double r
   return x;
 }
 
+Vec<3> onto_wall(const Locator<3>& wall, const Partition<3>& partition, const Vec<3>& x,
+                 double reach, double on) {
+  constexpr double same = 0.95;  // cosine of borders that do not fix a line
+  const auto foot = wall.nearest(x, reach);
+  if (!foot || foot->distance2 == 0) return x;
+  Hold hold;
+  hold.origin = foot->point;
+  hold.add_plane(wall.normal(foot->facet));
+  std::vector<Vec<3>> normals;
+  for (int k = 0; k < partition.background() && normals.size() < 2; ++k) {
+    const ZoneDistance<3> d = partition.zone(k).within(x, 2 * on);
+    if (std::abs(d.distance) > on || d.normal.isZero() ||
+        std::any_of(normals.begin(), normals.end(),
+                    [&](const Vec<3>& n) { return std::abs(n.dot(d.normal)) > same; }))
+      continue;
+    normals.push_back(d.normal);
+    hold.add_zone(k);
+  }
+  const auto y = hold.settle(partition, foot->point, on);
+  return y && (*y - x).norm() <= 4 * reach ? *y : foot->point;
+}
+
 }  // namespace lamella

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/parallel.h"
+#include "core/mesh/boundary.h"
 #include "core/mesh/element_locator.h"
 #include "core/multidomain/border_fit.h"
 #include "core/multidomain/border_sides.h"
@@ -95,6 +96,7 @@ class Cutter {
         params_(params),
         initial_(mesh.elements),
         locator_(mesh),
+        wall_(surface_of_facets(mesh)),
         mesh_(mesh, metric, partition, params, metric_at),
         followed_(shared_share * params.tolerance) {}
 
@@ -164,8 +166,10 @@ class Cutter {
     return true;
   }
 
+  /// The point of a feature, on borders that were cut already and on the wall where they are near.
   Vec<3> shared(const Vec<3>& x) const {
-    return onto_borders(partition_, zone_, x, shared_share * params_.tolerance);
+    const double reach = shared_share * params_.tolerance;
+    return onto_wall(wall_, partition_, onto_borders(partition_, zone_, x, reach), reach, mesh_.on);
   }
   bool follow_features(const ReferenceSurface<3>& surface, const Progress& progress) {
     double deep = params_.tolerance;
@@ -626,6 +630,7 @@ class Cutter {
   const CutParams& params_;
   const std::vector<Element>& initial_;
   ElementLocator<3> locator_;
+  Locator<3> wall_;  ///< of the domain
   CutTopology mesh_;
   Followed followed_;
   int zone_ = 0;
