@@ -11,6 +11,7 @@
 #include "core/mesh/validate.h"
 #include "core/metric/intersect.h"
 #include "core/multidomain/balance.h"
+#include "core/multidomain/chord_depth.h"
 #include "core/multidomain/chord_metric.h"
 #include "core/multidomain/exact_interface.h"
 #include "core/multidomain/interface_cut.h"
@@ -180,10 +181,10 @@ class AssemblyLoop {
   Result<void> balance(const Progress& progress) {
     if (std::exchange(balanced_, true)) return {};
     MeshState state = current_;
-    const std::size_t moved = balance_borders(
-        state.mesh, *of_.partition, first_face_,
-        {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance, of_.domain.get(), options_.threads},
-        progress);
+    const std::size_t moved = balance_borders(state.mesh, *of_.partition, first_face_,
+                                              {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance,
+                                               of_.domain.get(), border_depths(), options_.threads},
+                                              progress);
     for (int i = 0;; ++i) {
       Result<std::vector<Vec<3>>> far =
           of_.measure_distances(state.mesh, options_.threads, progress);
@@ -207,6 +208,22 @@ class AssemblyLoop {
     for (BodyOutcome& body : of_.outcomes) body.records.back() = last;
     current_ = std::move(state);
     return {};
+  }
+
+  /// [CAD face] of the triangles of parts below the shape they stand for; zones are exact.
+  std::vector<double> border_depths() const {
+    std::vector<double> all;
+    for (std::size_t m = 0; m < first_face_.size(); ++m) {
+      const Part& part = of_.members[m].part;
+      if (std::any_of(study_.zones.begin(), study_.zones.end(),
+                      [&](const StudyZone& z) { return z.name == part.name; }))
+        continue;
+      const std::vector<double> own = chord_depths(part.surface, part.cad_volume);
+      const auto from = static_cast<std::size_t>(first_face_[m]);
+      if (all.size() < from + own.size()) all.resize(from + own.size(), 0);
+      std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(from));
+    }
+    return all;
   }
 
   bool flows(std::size_t m) const {
