@@ -65,11 +65,11 @@ Vec<3> onto_borders(const Partition<3>& partition, int zones, Vec<3> x, double r
 Vec<3> onto_wall(const Locator<3>& wall, const Partition<3>& partition, const Vec<3>& x,
                  double reach, double on) {
   constexpr double same = 0.95;  // cosine of borders that do not fix a line
-  const auto foot = wall.nearest(x, reach);
-  if (!foot || foot->distance2 == 0) return x;
-  Hold hold;
-  hold.origin = foot->point;
-  hold.add_plane(wall.normal(foot->facet));
+  constexpr int facets = 4;      // that are tried: the point may be beyond the nearest one
+  const auto near = wall.nearest(x, reach);
+  if (!near || near->distance2 == 0) return x;
+  Nearest<3> foot = *near;
+  std::vector<int> zones;
   std::vector<Vec<3>> normals;
   for (int k = 0; k < partition.background() && normals.size() < 2; ++k) {
     const ZoneDistance<3> d = partition.zone(k).within(x, 2 * on);
@@ -78,10 +78,19 @@ Vec<3> onto_wall(const Locator<3>& wall, const Partition<3>& partition, const Ve
                     [&](const Vec<3>& n) { return std::abs(n.dot(d.normal)) > same; }))
       continue;
     normals.push_back(d.normal);
-    hold.add_zone(k);
+    zones.push_back(k);
   }
-  const auto y = hold.settle(partition, foot->point, on);
-  return y && (*y - x).norm() <= 4 * reach ? *y : foot->point;
+  for (int i = 0; i < facets; ++i) {
+    Hold hold;
+    hold.origin = foot.point;
+    hold.add_plane(wall.normal(foot.facet));
+    for (const int k : zones) hold.add_zone(k);
+    const auto y = hold.settle(partition, foot.point, on);
+    if (!y || (*y - x).norm() > 4 * reach) break;
+    foot = wall.nearest(*y).value_or(foot);
+    if (foot.distance2 <= 1e-12 * on * on) return *y;
+  }
+  return foot.point;
 }
 
 }  // namespace lamella

@@ -150,8 +150,25 @@ class Cutter {
         }
       front = std::move(next);
     }
-    if (best < -1e-6) return std::nullopt;
+    // Nodes of the wall may be off it.
+    if (!found || (best < -1e-6 && (inside_of(*found, x).first - x).norm() > 2 * mesh_.on))
+      return std::nullopt;
     return found;
+  }
+
+  /// The point in the element, moved into it where it is outside, and its weights.
+  std::pair<Vec<3>, Weights> inside_of(std::int32_t e, const Vec<3>& x) const {
+    Weights w = mesh_.weights_in(e, x);
+    const bool outside = *std::min_element(w.begin(), w.end()) < -1e-6;
+    double sum = 0;
+    for (double& k : w) {
+      if (k < 1e-9) k = 0;
+      sum += k;
+    }
+    if (!outside) return {x, w};
+    Vec<3> y = Vec<3>::Zero();
+    for (int k = 0; k < 4; ++k) y += (w[k] /= sum) * at(mesh_.topo.elements[e][k]);
+    return {y, w};
   }
 
   /// Whether x lies in the domain and in no zone of higher priority.
@@ -201,10 +218,8 @@ class Cutter {
   NodeId place(const Vec<3>& x) {
     const auto e = locate(x);
     if (!e) return 0;
-    Weights w = mesh_.weights_in(*e, x);
-    for (double& k : w)
-      if (k < 1e-9) k = 0;
-    return mesh_.bring_node(*e, w, x);
+    const auto [y, w] = inside_of(*e, x);
+    return mesh_.bring_node(*e, w, y);
   }
 
   /// Makes the segment a chain of edges as far as it is reachable; `from`: the node at p, or 0, and

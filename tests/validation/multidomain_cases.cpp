@@ -13,6 +13,7 @@
 #include "core/io/mesh_file.h"
 #include "core/multidomain/microstructure.h"
 #include "core/study/assembly_members.h"
+#include "core/study/request.h"
 #include "core/study/svg_plot.h"
 #include "tests/support/sample_surfaces.h"
 #include "tests/support/temporary_folder.h"
@@ -213,9 +214,10 @@ Result<std::string> exact_row(const Scene& scene, const fs::path& meshes) {
   const MeshState& state = *outcome->state;
   const std::size_t poor = static_cast<std::size_t>(std::count_if(
       state.quality.begin(), state.quality.end(), [](double q) { return q < kPoor; }));
-  double off = 0;
+  double off = 0;  // what is around bodies has their surfaces and the domain's
   for (const BodyOutcome& b : outcome->bodies)
-    off = std::max(off, b.boundary_distance.largest() / b.chord_tolerance);
+    if (b.name != kBackground)
+      off = std::max(off, b.boundary_distance.largest() / b.chord_tolerance);
   const IterationRecord& last = outcome->records.back();
   std::string file = scene.name;
   std::replace_if(
