@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/mesh/simplex_mesh.h"
@@ -12,10 +13,10 @@ struct BalanceParams {
   double most = 0;       ///< mm, > 0: how far a node may move, of the wall how far beyond it
   double tolerance = 0;  ///< mm: facets go no farther from their border, or than they were
   const Zone<3>* domain = nullptr;  ///< what the mesh fills; null: its wall stays as it is
+  int threads = 0;                  ///< 0: all cores; the result does not depend on it
   /// [CAD face] mm: how deep the zone's own border lies below the shape it stands for, see
   /// chord_depth.h; beyond its end not at all
   std::vector<double> depth{};
-  int threads = 0;  ///< 0: all cores; the result does not depend on it
 };
 
 /// Moves nodes of smooth borders, and of the domain's wall, across them, so that as much of what

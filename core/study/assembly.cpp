@@ -146,7 +146,7 @@ class AssemblyLoop {
 
   /// Closes the books, the figures with a finer division at the borders than in the loop.
   Result<std::vector<BodyOutcome>> finish(const Progress& progress) {
-    if (exact_)
+    if (exact_ || of_.wall)
       if (Result<void> balanced = balance(progress); !balanced) return balanced.error();
     for (std::size_t m = 0; exact_ && m < of_.members.size(); ++m) {
       if (of_.body_of[m] < 0) continue;
@@ -175,17 +175,17 @@ class AssemblyLoop {
     return volume;
   }
 
-  /// The last touch to exact borders: what was adapted again would go back onto them. Where that
-  /// takes a body too far from its surface nodes go back at once. Qualities are those of the mesh
-  /// that is handed out. Errors: cancelled.
+  /// The last touch to exact borders and to the wall, all that a mesh of fuzzy ones has: what was
+  /// adapted again would go back onto them. Where that takes a body too far from its surface nodes
+  /// go back at once. Qualities are those of the mesh that is handed out. Errors: cancelled.
   Result<void> balance(const Progress& progress) {
     if (std::exchange(balanced_, true)) return {};
     MeshState state = current_;
     const std::size_t moved = balance_borders(state.mesh, *of_.partition, first_face_,
                                               {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance,
-                                               of_.domain.get(), border_depths(), options_.threads},
+                                               of_.domain.get(), options_.threads, border_depths()},
                                               progress);
-    for (int i = 0;; ++i) {
+    for (int i = 0; exact_; ++i) {
       Result<std::vector<Vec<3>>> far =
           of_.measure_distances(state.mesh, options_.threads, progress);
       if (!far) return far.error();
@@ -194,6 +194,7 @@ class AssemblyLoop {
     }
     if (moved == 0) return {};
     if (!validate<3>(state.mesh).ok()) {
+      if (!exact_) return {};
       const auto before = of_.measure_distances(current_.mesh, options_.threads, progress);
       return before ? Result<void>{} : before.error();
     }
