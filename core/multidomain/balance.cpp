@@ -1,5 +1,6 @@
 #include "core/multidomain/balance.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -19,31 +20,45 @@ constexpr double least_left = 0.5;
 constexpr double least_step = 1e-6;
 /// Points of a facet, to an edge, where its distance is asked.
 constexpr int samples = 4;
+/// Of the way from the middle of a facet to its corners: where the border's normal is asked.
+constexpr double inner_share = 0.7;
+/// Borders that turn by less at a node are one; of what they lack, what a step may miss.
+constexpr double least_turn = 0.25, missed_share = 0.3;
 constexpr int wall = -1, none = -2;  // in place of a zone
 
 /// Barycentric weights whose mean is exact for quadratic functions on a triangle.
 constexpr std::array<std::array<double, 3>, 3> middles{
     {{0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}};
 
-/// What the facets of a border around a node have of it.
+/// What the facets of a smooth part of a border around a node have of it.
 struct Share {
   int zone = none;
+  Vec<3> normal = Vec<3>::Zero();
   double area = 0;     ///< a third of the facets, mm^2
   double missing = 0;  ///< what they lack, mm^3
 };
 
 struct NodeShares {
-  std::array<Share, 2> of;
+  static constexpr std::size_t most = 5;
+  std::array<Share, most> of;
+  std::size_t count = 0;
   bool moves = true;
 
-  Share& operator[](int zone) { return of[of[0].zone == zone ? 0 : 1]; }
-  /// A third border holds the node.
-  void add(int zone) {
-    for (Share& s : of) {
-      if (s.zone == none) s.zone = zone;
-      if (s.zone == zone) return;
+  /// The share of facets of the zone that look there; null where there is none.
+  Share* find(int zone, const Vec<3>& normal) {
+    for (std::size_t k = 0; k < count; ++k)
+      if (of[k].zone == zone && of[k].normal.dot(normal) > smooth_turn) return &of[k];
+    return nullptr;
+  }
+  /// Too many borders hold the node.
+  void add(int zone, const Vec<3>& normal) {
+    if (find(zone, normal)) return;
+    if (count == most) {
+      moves = false;
+      return;
     }
-    moves = false;
+    of[count].zone = zone;
+    of[count++].normal = normal;
   }
 };
 
@@ -59,16 +74,15 @@ class Balance {
 
   std::size_t run(const Progress& progress) {
     for (std::size_t f = 0; f < mesh_.facets.size(); ++f) {
-      const int zone = zone_of(f);
-      if (zone != wall || params_.domain) facets_.push_back(f);
-      for (NodeId n : mesh_.facets[f]) {
-        shares_[n].add(zone);
-        if (zone == wall && !params_.domain) shares_[n].moves = false;
-      }
+      if (zone_of(f) != wall || params_.domain)
+        facets_.push_back(f);
+      else
+        for (NodeId n : mesh_.facets[f]) shares_[n].moves = false;
     }
     before_ = mesh_.points;
     far_.resize(facets_.size());
-    if (!hold_edges(progress.portion(0, 0.25))) return 0;
+    normals_.assign(facets_.size(), Vec<3>::Zero());
+    if (!find_shares(progress.portion(0, 0.25))) return 0;
     for (int round = 0; round < rounds; ++round)
       if (!step(progress.portion(0.25 * (round + 1), 0.25 * (round + 2)))) break;
     std::size_t moved = 0;
@@ -104,34 +118,48 @@ class Balance {
     return false;
   }
 
-  /// Nodes stay where the border is not smooth.
-  bool hold_edges(const Progress& progress) {
+  /// The smooth parts of borders at the nodes; nodes of facets over an edge stay.
+  bool find_shares(const Progress& progress) {
     std::vector<char> rough(facets_.size());
-    const auto find_rough = [&](std::size_t i) {
+    const auto look = [&](std::size_t i) {
       const auto p = mesh_.corners(mesh_.facets[facets_[i]]);
-      const Vec<3> normal = facet_normal<3>(p).normalized();
-      for (const Vec<3>& x : p)
-        rough[i] |= std::abs(zone(zone_of(facets_[i])).at(x).normal.dot(normal)) < smooth_turn;
+      const Vec<3> normal = facet_normal<3>(p).normalized(), middle = (p[0] + p[1] + p[2]) / 3;
+      const Zone<3>& border = zone(zone_of(facets_[i]));
+      for (const Vec<3>& x : p) {
+        const Vec<3> of_border = border.at(middle + inner_share * (x - middle)).normal;
+        const double cosine = of_border.dot(normal);
+        rough[i] |= std::abs(cosine) < smooth_turn;
+        normals_[i] += cosine < 0 ? -normal : normal;
+      }
+      normals_[i].normalize();
       far_[i] = far(facets_[i]);
     };
-    if (!parallel_each(facets_.size(), params_.threads, progress, find_rough)) return false;
+    if (!parallel_each(facets_.size(), params_.threads, progress, look)) return false;
     for (std::size_t i = 0; i < facets_.size(); ++i)
-      if (rough[i])
-        for (NodeId n : mesh_.facets[facets_[i]]) shares_[n].moves = false;
+      for (NodeId n : mesh_.facets[facets_[i]]) {
+        if (rough[i]) shares_[n].moves = false;
+        shares_[n].add(zone_of(facets_[i]), normals_[i]);
+      }
     return true;
   }
 
-  /// Where the node goes for what its borders lack, from where it was.
+  /// Where the node goes for what its borders lack, from where it was: the shortest step that has
+  /// all of it along their normals.
   Vec<3> asked(const NodeShares& s, NodeId n) const {
-    const auto lacks = [](const Share& of) { return of.area > 0 ? of.missing / of.area : 0; };
     const Vec<3> x = mesh_.points[n] - before_[n];
-    const Vec<3> m = zone(s.of[0].zone).at(before_[n]).normal;
-    if (s.of[1].zone == none) return x + lacks(s.of[0]) * m;
-    // The shortest step that has both along their normals.
-    const Vec<3> k = zone(s.of[1].zone).at(before_[n]).normal;
-    const double c = m.dot(k), a = lacks(s.of[0]), b = lacks(s.of[1]);
-    if (std::abs(c) > smooth_turn) return x;
-    return x + ((a - c * b) * m + (b - c * a) * k) / (1 - c * c);
+    const auto rows = static_cast<Eigen::Index>(s.count);
+    Eigen::MatrixXd a(rows, 3);
+    Eigen::VectorXd b(rows);
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      const Share& of = s.of[static_cast<std::size_t>(k)];
+      a.row(k) = of.normal.transpose();
+      b[k] = of.area > 0 ? of.missing / of.area : 0;
+    }
+    Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    svd.setThreshold(least_turn);
+    const Vec<3> step = svd.solve(b);
+    const bool met = (a * step - b).cwiseAbs().maxCoeff() <= missed_share * b.cwiseAbs().maxCoeff();
+    return met ? Vec<3>(x + step) : x;
   }
 
   bool step(const Progress& progress) {
@@ -141,6 +169,8 @@ class Balance {
       const Zone<3>& border = zone(zone_of(facets_[i]));
       for (const auto& w : middles)
         depth[i] += border.distance(w[0] * p[0] + w[1] * p[1] + w[2] * p[2]) / 3;
+      const auto face = static_cast<std::size_t>(mesh_.facet_face[facets_[i]]);
+      if (face < params_.depth.size()) depth[i] -= params_.depth[face];
     };
     if (!parallel_each(facets_.size(), params_.threads, progress, distances)) return false;
     for (NodeShares& s : shares_)
@@ -153,8 +183,10 @@ class Balance {
           std::count_if(nodes.begin(), nodes.end(), [&](NodeId n) { return shares_[n].moves; });
       for (NodeId n : nodes) {
         if (!shares_[n].moves) continue;
-        shares_[n][zone].area += area / 3;
-        shares_[n][zone].missing -= depth[i] * area / static_cast<double>(moving);
+        Share* share = shares_[n].find(zone, normals_[i]);
+        if (!share) continue;
+        share->area += area / 3;
+        share->missing -= depth[i] * area / static_cast<double>(moving);
       }
     }
     std::vector<double> volume(mesh_.elements.size());
@@ -164,7 +196,7 @@ class Balance {
     std::vector<Vec<3>> next = start;
     parallel_each(mesh_.node_count(), params_.threads, {}, [&](std::size_t i) {
       const NodeShares& s = shares_[i + 1];
-      if (!s.moves || s.of[0].zone == none) return;
+      if (!s.moves || s.count == 0) return;
       const Vec<3> to = asked(s, static_cast<NodeId>(i + 1));
       // A node of a wall that was itself made of chords starts that far inside.
       double inside = 0;
@@ -209,6 +241,7 @@ class Balance {
   std::vector<std::size_t> facets_;         ///< of borders that are known
   std::vector<Vec<3>> before_;              ///< [node]
   std::vector<std::array<double, 2>> far_;  ///< [of facets_] mm, before
+  std::vector<Vec<3>> normals_;             ///< [of facets_] outward of their zone
 };
 
 }  // namespace

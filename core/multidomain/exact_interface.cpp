@@ -32,11 +32,11 @@ constexpr double finer_share = 1.5;
 constexpr double chord_share = 0.6;
 constexpr double chord_growth = 0.7;
 /// Quality below which the background is refined and cut again, to this share of the sizes, how
-/// often (less where that gains nothing twice), and the share of poor elements that is too many for
+/// often at most and in a row without a gain, and the share of poor elements that is too many for
 /// it.
 constexpr double poor_quality = 0.2;
 constexpr double recut_size = 0.6;
-constexpr int recuts = 5;
+constexpr int recuts = 8, idle_recuts = 4;
 constexpr double many_poor = 0.03;
 
 std::int32_t face_count(const std::vector<std::int32_t>& facet_face) {
@@ -431,7 +431,7 @@ Result<Exact> exact_interfaces(const SimplexMesh<3>& mesh, const MetricField<3>&
   Result<Exact> best = cutting.cut(background, progress.portion(0.4, 0.5));
   if (!best) return best.error();
   Poor poor = poor_elements(*best);
-  for (int i = 0, idle = 0; !best->adapt.cancelled && i < recuts && idle < 2; ++i) {
+  for (int i = 0, idle = 0; !best->adapt.cancelled && i < recuts && idle < idle_recuts; ++i) {
     const Progress again = progress.portion(0.5 + 0.25 * i / recuts, 0.5 + 0.25 * (i + 1) / recuts);
     if (poor.places.empty() || static_cast<double>(poor.places.size()) >
                                    many_poor * static_cast<double>(best->mesh.elements.size()))

@@ -62,4 +62,35 @@ Vec<3> onto_borders(const Partition<3>& partition, int zones, Vec<3> x, double r
   return x;
 }
 
+Vec<3> onto_wall(const Locator<3>& wall, const Partition<3>& partition, const Vec<3>& x,
+                 double reach, double on) {
+  constexpr double same = 0.95;  // cosine of borders that do not fix a line
+  constexpr int facets = 4;      // that are tried: the point may be beyond the nearest one
+  const auto near = wall.nearest(x, reach);
+  if (!near || near->distance2 == 0) return x;
+  Nearest<3> foot = *near;
+  std::vector<int> zones;
+  std::vector<Vec<3>> normals;
+  for (int k = 0; k < partition.background() && normals.size() < 2; ++k) {
+    const ZoneDistance<3> d = partition.zone(k).within(x, 2 * on);
+    if (std::abs(d.distance) > on || d.normal.isZero() ||
+        std::any_of(normals.begin(), normals.end(),
+                    [&](const Vec<3>& n) { return std::abs(n.dot(d.normal)) > same; }))
+      continue;
+    normals.push_back(d.normal);
+    zones.push_back(k);
+  }
+  for (int i = 0; i < facets; ++i) {
+    Hold hold;
+    hold.origin = foot.point;
+    hold.add_plane(wall.normal(foot.facet));
+    for (const int k : zones) hold.add_zone(k);
+    const auto y = hold.settle(partition, foot.point, on);
+    if (!y || (*y - x).norm() > 4 * reach) break;
+    foot = wall.nearest(*y).value_or(foot);
+    if (foot.distance2 <= 1e-12 * on * on) return *y;
+  }
+  return foot.point;
+}
+
 }  // namespace lamella

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/geometry/locator.h"
 #include "core/multidomain/partition.h"
 
 namespace lamella {
@@ -23,5 +24,10 @@ struct Hold {
 
 /// The point, on the borders of the first `zones` zones where they are as near as `reach` mm.
 Vec<3> onto_borders(const Partition<3>& partition, int zones, Vec<3> x, double reach);
+
+/// The point, on the wall where that is as near as `reach` mm; it stays on the borders that it lies
+/// on within `on` mm where they go there.
+Vec<3> onto_wall(const Locator<3>& wall, const Partition<3>& partition, const Vec<3>& x,
+                 double reach, double on);
 
 }  // namespace lamella

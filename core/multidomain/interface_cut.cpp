@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/parallel.h"
+#include "core/mesh/boundary.h"
 #include "core/mesh/element_locator.h"
 #include "core/multidomain/border_fit.h"
 #include "core/multidomain/border_sides.h"
@@ -95,6 +96,7 @@ class Cutter {
         params_(params),
         initial_(mesh.elements),
         locator_(mesh),
+        wall_(surface_of_facets(mesh)),
         mesh_(mesh, metric, partition, params, metric_at),
         followed_(shared_share * params.tolerance) {}
 
@@ -148,8 +150,25 @@ class Cutter {
         }
       front = std::move(next);
     }
-    if (best < -1e-6) return std::nullopt;
+    // Nodes of the wall may be off it.
+    if (!found || (best < -1e-6 && (inside_of(*found, x).first - x).norm() > 2 * mesh_.on))
+      return std::nullopt;
     return found;
+  }
+
+  /// The point in the element, moved into it where it is outside, and its weights.
+  std::pair<Vec<3>, Weights> inside_of(std::int32_t e, const Vec<3>& x) const {
+    Weights w = mesh_.weights_in(e, x);
+    const bool outside = *std::min_element(w.begin(), w.end()) < -1e-6;
+    double sum = 0;
+    for (double& k : w) {
+      if (k < 1e-9) k = 0;
+      sum += k;
+    }
+    if (!outside) return {x, w};
+    Vec<3> y = Vec<3>::Zero();
+    for (int k = 0; k < 4; ++k) y += (w[k] /= sum) * at(mesh_.topo.elements[e][k]);
+    return {y, w};
   }
 
   /// Whether x lies in the domain and in no zone of higher priority.
@@ -164,8 +183,10 @@ class Cutter {
     return true;
   }
 
+  /// The point of a feature, on borders that were cut already and on the wall where they are near.
   Vec<3> shared(const Vec<3>& x) const {
-    return onto_borders(partition_, zone_, x, shared_share * params_.tolerance);
+    const double reach = shared_share * params_.tolerance;
+    return onto_wall(wall_, partition_, onto_borders(partition_, zone_, x, reach), reach, mesh_.on);
   }
   bool follow_features(const ReferenceSurface<3>& surface, const Progress& progress) {
     double deep = params_.tolerance;
@@ -197,10 +218,8 @@ class Cutter {
   NodeId place(const Vec<3>& x) {
     const auto e = locate(x);
     if (!e) return 0;
-    Weights w = mesh_.weights_in(*e, x);
-    for (double& k : w)
-      if (k < 1e-9) k = 0;
-    return mesh_.bring_node(*e, w, x);
+    const auto [y, w] = inside_of(*e, x);
+    return mesh_.bring_node(*e, w, y);
   }
 
   /// Makes the segment a chain of edges as far as it is reachable; `from`: the node at p, or 0, and
@@ -626,6 +645,7 @@ class Cutter {
   const CutParams& params_;
   const std::vector<Element>& initial_;
   ElementLocator<3> locator_;
+  Locator<3> wall_;  ///< of the domain
   CutTopology mesh_;
   Followed followed_;
   int zone_ = 0;

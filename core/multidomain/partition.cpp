@@ -4,7 +4,7 @@ namespace lamella {
 
 namespace {
 
-constexpr double kRounding = 1e-12;  // of the coordinates
+constexpr double kRounding = 1e-9;  // of the coordinates
 
 /// Without a sign, the normal towards the other side.
 template <int D>
@@ -44,9 +44,9 @@ ZoneDistance<D> Partition<D>::zone_at(int k, const Vec<D>& x, double reach) cons
 template <int D>
 int Partition<D>::region_of(const Vec<D>& x) const {
   int touched = background();
-  const double rounding = kRounding * x.cwiseAbs().maxCoeff();
+  const double rounding = kRounding * (1 + x.cwiseAbs().maxCoeff());
   for (int k = 0; k < background(); ++k) {
-    const double distance = zone_at(k, x, 0).distance;
+    const double distance = zone_at(k, x, 2 * rounding).distance;
     if (distance < 0) return k;
     if (distance <= rounding && touched == background()) touched = k;
   }
@@ -86,7 +86,7 @@ void Partition<D>::borders(const Vec<D>& x, double reach, std::vector<Border<D>>
     const ZoneDistance<D> own = zone_at(k, x, reach);
     if (std::abs(own.distance) >= reach) continue;
     const Vec<D> foot = x - own.distance * own.normal;
-    const double rounding = 1e-9 * (1 + x.cwiseAbs().maxCoeff());
+    const double rounding = kRounding * (1 + x.cwiseAbs().maxCoeff());
     bool hidden = false;
     for (int j = 0; j < k && !hidden; ++j) hidden = zone_at(j, foot, 0).distance < -rounding;
     if (!hidden) found.push_back({k, facing(own)});

@@ -11,6 +11,8 @@ namespace {
 constexpr double facet_turn = 0.8;
 /// A facet must not look away from the surface it stands for.
 constexpr double surface_turn = 0.4;
+/// Of the tolerance: the height of facets below which their normals tell nothing.
+constexpr double thin_share = 0.5;
 /// Of the tolerance: nodes that are as near to a feature are on it.
 constexpr double near_share = 0.1;
 
@@ -284,6 +286,7 @@ template <int D>
 bool StarOptimizer<D>::boundary_within(const Apex& apex, const BoundarySite& site, double limit,
                                        double feature_limit) {
   const Vec<D>& anchor = site.anchor;
+  const double tol = model_.tolerance();
   const bool ends = site.ends[0] != 0;
   if (D == 4 && site.b == 0 && !borders_allow(apex, site)) return false;
   const std::size_t count = virtual_faces_.size();
@@ -327,7 +330,9 @@ bool StarOptimizer<D>::boundary_within(const Apex& apex, const BoundarySite& sit
     double scale = 1;
     for (int k = 0; k < D - 1; ++k) scale *= std::sqrt(size2);
     if (na <= 1e-10 * scale) return false;
-    const bool known = nb > 1e-6 * scale;
+    // Facets thinner than what nodes may be off the surface look anywhere.
+    const double thin = model_.has_surface() && D == 3 ? thin_share * tol : 0;
+    const bool known = nb > std::max(1e-6 * scale, thin * std::sqrt(size2));
     const double turn = known ? before.dot(after) / (nb * na) : 1;
     if (turn < facet_turn) return false;
     const double height = std::abs(after.dot(anchor - apex.point)) / na;

@@ -11,6 +11,7 @@
 #include "core/mesh/validate.h"
 #include "core/metric/intersect.h"
 #include "core/multidomain/balance.h"
+#include "core/multidomain/chord_depth.h"
 #include "core/multidomain/chord_metric.h"
 #include "core/multidomain/exact_interface.h"
 #include "core/multidomain/interface_cut.h"
@@ -145,7 +146,7 @@ class AssemblyLoop {
 
   /// Closes the books, the figures with a finer division at the borders than in the loop.
   Result<std::vector<BodyOutcome>> finish(const Progress& progress) {
-    if (exact_)
+    if (exact_ || of_.wall)
       if (Result<void> balanced = balance(progress); !balanced) return balanced.error();
     for (std::size_t m = 0; exact_ && m < of_.members.size(); ++m) {
       if (of_.body_of[m] < 0) continue;
@@ -174,17 +175,17 @@ class AssemblyLoop {
     return volume;
   }
 
-  /// The last touch to exact borders: what was adapted again would go back onto them. Where that
-  /// takes a body too far from its surface nodes go back at once. Qualities are those of the mesh
-  /// that is handed out. Errors: cancelled.
+  /// The last touch to exact borders and to the wall, all that a mesh of fuzzy ones has: what was
+  /// adapted again would go back onto them. Where that takes a body too far from its surface nodes
+  /// go back at once. Qualities are those of the mesh that is handed out. Errors: cancelled.
   Result<void> balance(const Progress& progress) {
     if (std::exchange(balanced_, true)) return {};
     MeshState state = current_;
-    const std::size_t moved = balance_borders(
-        state.mesh, *of_.partition, first_face_,
-        {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance, of_.domain.get(), options_.threads},
-        progress);
-    for (int i = 0;; ++i) {
+    const std::size_t moved = balance_borders(state.mesh, *of_.partition, first_face_,
+                                              {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance,
+                                               of_.domain.get(), options_.threads, border_depths()},
+                                              progress);
+    for (int i = 0; exact_; ++i) {
       Result<std::vector<Vec<3>>> far =
           of_.measure_distances(state.mesh, options_.threads, progress);
       if (!far) return far.error();
@@ -193,6 +194,7 @@ class AssemblyLoop {
     }
     if (moved == 0) return {};
     if (!validate<3>(state.mesh).ok()) {
+      if (!exact_) return {};
       const auto before = of_.measure_distances(current_.mesh, options_.threads, progress);
       return before ? Result<void>{} : before.error();
     }
@@ -207,6 +209,22 @@ class AssemblyLoop {
     for (BodyOutcome& body : of_.outcomes) body.records.back() = last;
     current_ = std::move(state);
     return {};
+  }
+
+  /// [CAD face] of the triangles of parts below the shape they stand for; zones are exact.
+  std::vector<double> border_depths() const {
+    std::vector<double> all;
+    for (std::size_t m = 0; m < first_face_.size(); ++m) {
+      const Part& part = of_.members[m].part;
+      if (std::any_of(study_.zones.begin(), study_.zones.end(),
+                      [&](const StudyZone& z) { return z.name == part.name; }))
+        continue;
+      const std::vector<double> own = chord_depths(part.surface, part.cad_volume);
+      const auto from = static_cast<std::size_t>(first_face_[m]);
+      if (all.size() < from + own.size()) all.resize(from + own.size(), 0);
+      std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(from));
+    }
+    return all;
   }
 
   bool flows(std::size_t m) const {

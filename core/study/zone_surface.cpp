@@ -102,7 +102,8 @@ TriangleSoup cylinder(const ZoneCylinder& c, double tolerance) {
   return soup;
 }
 
-/// Octahedron with its triangles cut in four until chords are short enough.
+/// Octahedron with its triangles cut in four until none lies deeper than the tolerance: those in
+/// the middle of its faces are larger than those along its edges.
 TriangleSoup ball(const ZoneBall& b, double tolerance) {
   TriangleSoup soup;
   for (const double z : {1.0, -1.0})
@@ -114,8 +115,11 @@ TriangleSoup ball(const ZoneBall& b, double tolerance) {
       else
         soup.push_back({q, p, r});
     }
-  const int wanted = chords(b.radius, tolerance);
-  for (int sides = 4; sides < wanted; sides *= 2) {
+  const auto deep = [&](const std::array<Vec<3>, 3>& facet) {
+    return b.radius * (1 - facet[0].dot(facet_normal<3>(facet).normalized())) > tolerance;
+  };
+  constexpr std::size_t most = 1'000'000;
+  while (soup.size() < 128 || (soup.size() < most && std::any_of(soup.begin(), soup.end(), deep))) {
     TriangleSoup finer;
     for (const auto& [p, q, r] : soup) {
       const Vec<3> pq = (p + q).normalized(), qr = (q + r).normalized(), rp = (r + p).normalized();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numbers>
 
 #include "core/base/atomic_file.h"
@@ -12,11 +13,11 @@
 #include "core/io/mesh_file.h"
 #include "core/multidomain/microstructure.h"
 #include "core/study/assembly_members.h"
+#include "core/study/request.h"
 #include "core/study/svg_plot.h"
 #include "tests/support/sample_surfaces.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/validation/layer_cases.h"
-#include "tests/validation/page.h"
 
 namespace lamella {
 namespace {
@@ -81,7 +82,7 @@ Result<Scene> polycrystal(int grains) {
                study_of(std::move(zones), {ZoneCylinder{from, to, 5}})};
 }
 
-/// The tube in its block, figures 6.2 and 7.2: the block is what is around the tube.
+/// The tube in its block, figures 6.2 and 7.2, with the bore of the tube as what is around both.
 Result<Scene> twisted_tube() {
   const test::TemporaryFolder folder;
   const fs::path file = folder / "twisted_tube.step";
@@ -90,7 +91,7 @@ Result<Scene> twisted_tube() {
   Result<std::vector<Part>> parts = load_parts(file);
   if (!parts) return parts.error();
   Scene scene{"twisted tube in a block", {}, std::move(*parts)};
-  scene.study.domain = StudyDomain{DomainBodies{}};
+  scene.study.domain = StudyDomain{ZoneBox{{-30, -30, 0}, {30, 30, 60}}};
   return scene;
 }
 
@@ -142,6 +143,38 @@ std::array<double, 2> turns_of_elements(const MeshState& state, const Partition<
   return most;
 }
 
+/// Puts a row of a table between the comments "table NAME" and "end" of a page in place of the one
+/// with the same first cell, or at the end.
+Result<void> set_row(std::string& page, const std::string& table, const std::string& row) {
+  const std::string begin = "<!-- table " + table + " -->\n";
+  const std::size_t from = page.find(begin);
+  const std::size_t to = from == std::string::npos ? from : page.find("<!-- end -->", from);
+  if (to == std::string::npos)
+    return Error{Code::bad_input, "The page has no table \"" + table + "\".",
+                 "It stands between the lines " + begin + " and <!-- end -->."};
+  const std::string cell = row.substr(0, row.find('|', 1) + 1);
+  std::size_t line = page.find("\n" + cell, from);
+  if (line == std::string::npos || line > to) {
+    page.insert(to, row);
+  } else {
+    ++line;
+    page.replace(line, page.find('\n', line) + 1 - line, row);
+  }
+  return {};
+}
+
+/// The first number of a row of a table; NaN where it has none.
+double number_in_row(const std::string& page, const std::string& table, const std::string& name) {
+  const std::size_t from = page.find("<!-- table " + table + " -->\n");
+  const std::string cell = "\n| " + name + " | ";
+  const std::size_t line = from == std::string::npos ? from : page.find(cell, from);
+  if (line == std::string::npos || line > page.find("<!-- end -->", from)) return std::nan("");
+  const char* text = page.c_str() + line + cell.size();
+  char* end = nullptr;
+  const double value = std::strtod(text, &end);
+  return end == text ? std::nan("") : value;
+}
+
 /// The largest error of a volume, %, of the bodies whose volume is known and not that of a sliver.
 double volume_error(const std::vector<BodyOutcome>& bodies) {
   double total = 0, worst = 0;
@@ -175,15 +208,16 @@ Result<std::string> fuzzy_row(const Scene& scene, double exact_nodes) {
          number(records.back().quality_min, 2) + " |\n";
 }
 
-Result<std::string> exact_row(const Scene& scene, const fs::path& meshes, double& nodes) {
+Result<std::string> exact_row(const Scene& scene, const fs::path& meshes) {
   Result<Outcome> outcome = made(scene, Interfaces::exact, kFirst, true);
   if (!outcome) return outcome.error();
   const MeshState& state = *outcome->state;
   const std::size_t poor = static_cast<std::size_t>(std::count_if(
       state.quality.begin(), state.quality.end(), [](double q) { return q < kPoor; }));
-  double off = 0;
+  double off = 0;  // what is around bodies has their surfaces and the domain's
   for (const BodyOutcome& b : outcome->bodies)
-    off = std::max(off, b.boundary_distance.largest() / b.chord_tolerance);
+    if (b.name != kBackground)
+      off = std::max(off, b.boundary_distance.largest() / b.chord_tolerance);
   const IterationRecord& last = outcome->records.back();
   std::string file = scene.name;
   std::replace_if(
@@ -193,13 +227,12 @@ Result<std::string> exact_row(const Scene& scene, const fs::path& meshes, double
   const Result<ExportCertificate> written =
       write_mesh_file(own_formats().front(), state.mesh, fields, meshes / (file + ".msh"));
   if (!written) return written.error();
-  nodes = static_cast<double>(last.nodes);
-  return "| " + scene.name + " | " + number(nodes, 6) + " | " + std::to_string(last.iteration) +
-         " | " + number(outcome->seconds, 2) + " | " + number(last.layers.mean) + " / " +
-         number(last.layers.p5) + " | " + number(volume_error(outcome->bodies), 2) + " % | " +
-         number(off, 2) + " | " + number(last.quality_mean) + " / " + number(last.quality_min, 2) +
-         " | " + std::to_string(poor) + " of " + std::to_string(state.mesh.elements.size()) +
-         " |\n";
+  return "| " + scene.name + " | " + number(static_cast<double>(last.nodes), 6) + " | " +
+         std::to_string(last.iteration) + " | " + number(outcome->seconds, 2) + " | " +
+         number(last.layers.mean) + " / " + number(last.layers.p5) + " | " +
+         number(volume_error(outcome->bodies), 2) + " % | " + number(off, 2) + " | " +
+         number(last.quality_mean) + " / " + number(last.quality_min, 2) + " | " +
+         std::to_string(poor) + " of " + std::to_string(state.mesh.elements.size()) + " |\n";
 }
 
 Result<std::vector<Scene>> scenes(const std::optional<fs::path>& cad) {
@@ -237,44 +270,86 @@ Result<std::vector<Scene>> scenes(const std::optional<fs::path>& cad) {
   return all;
 }
 
-Result<void> regenerate(const fs::path& folder, const std::optional<fs::path>& cad) {
-  const fs::path page_file = folder / "multidomain.md";
-  Result<std::string> page = read_file(page_file);
-  if (!page) return page.error();
-  Result<std::vector<Scene>> all = scenes(cad);
+/// What is asked for on the command line.
+struct Wanted {
+  fs::path folder;                 ///< of multidomain.md
+  std::optional<fs::path> cad;     ///< of the CAD files
+  std::vector<std::string> names;  ///< beginnings of the cases' names; none: all
+  bool exact = true, fuzzy = true;
+};
+
+Wanted wanted(const std::vector<std::string>& arguments) {
+  Wanted all;
+  all.folder = arguments.front();
+  bool one_kind = false;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const std::string& a = arguments[i];
+    if (a == "exact" || a == "fuzzy") {
+      if (!std::exchange(one_kind, true)) all.exact = all.fuzzy = false;
+      (a == "exact" ? all.exact : all.fuzzy) = true;
+    } else if (i == 1 && fs::is_directory(a)) {
+      all.cad = a;
+    } else {
+      all.names.push_back(a);
+    }
+  }
+  return all;
+}
+
+Result<void> regenerate(const Wanted& of) {
+  const fs::path page_file = of.folder / "multidomain.md";
+  Result<std::vector<Scene>> all = scenes(of.cad);
   if (!all) return all.error();
   const fs::path meshes = fs::temp_directory_path() / "lamella_multidomain";
   fs::create_directories(meshes);
-  std::string exact =
-      "| case | nodes | iterations | s | layers mean / 5 % | volume | distance | quality mean / "
-      "worst | below 0.2 |\n|---|---|---|---|---|---|---|---|---|\n";
-  std::string fuzzy =
-      "| case | nodes | of the exact ones | from 8 to 12 | error after 1 / 12 | settled from | "
-      "volume | degrees of metric / shape | quality mean / worst "
-      "|\n|---|---|---|---|---|---|---|---|---|\n";
-  const auto told = [](const Scene& scene, const Result<std::string>& row) {
+  const auto wants = [&](const Scene& scene) {
+    return of.names.empty() ||
+           std::any_of(of.names.begin(), of.names.end(),
+                       [&](const std::string& name) { return scene.name.rfind(name, 0) == 0; });
+  };
+  // The page keeps each row as soon as it is there: all of them take hours.
+  const auto keep = [&](const Scene& scene, const std::string& table,
+                        const Result<std::string>& row) -> Result<void> {
     if (!row) std::fprintf(stderr, "%s: %s\n", scene.name.c_str(), row.error().message.c_str());
     const std::string text = row ? *row : "| " + scene.name + " | " + row.error().message + " |\n";
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
-    return text;
+    Result<std::string> page = read_file(page_file);
+    if (!page) return page.error();
+    if (Result<void> set = set_row(*page, table, text); !set) return set.error();
+    return write_file(page_file, *page);
   };
   // Exact meshes first: they take a small part of the time.
-  std::vector<double> nodes(all->size(), 0);
-  for (std::size_t i = 0; i < all->size(); ++i)
-    exact += told((*all)[i], exact_row((*all)[i], meshes, nodes[i]));
-  if (Result<void> set = set_table(*page, "exact interfaces", exact); !set) return set.error();
-  if (Result<void> written = write_file(page_file, *page); !written) return written.error();
-  for (std::size_t i = 0; i < all->size(); ++i)
-    fuzzy += told((*all)[i], fuzzy_row((*all)[i], nodes[i]));
-  if (Result<void> set = set_table(*page, "fuzzy interfaces", fuzzy); !set) return set.error();
+  for (const Scene& scene : *all)
+    if (of.exact && wants(scene))
+      if (Result<void> kept = keep(scene, "exact interfaces", exact_row(scene, meshes)); !kept)
+        return kept.error();
+  for (const Scene& scene : *all)
+    if (of.fuzzy && wants(scene)) {
+      const Result<std::string> page = read_file(page_file);
+      if (!page) return page.error();
+      const double exact_nodes = number_in_row(*page, "exact interfaces", scene.name);
+      if (Result<void> kept = keep(scene, "fuzzy interfaces", fuzzy_row(scene, exact_nodes)); !kept)
+        return kept.error();
+    }
   std::printf("meshes are in %s\n", meshes.string().c_str());
-  return write_file(page_file, *page);
+  return {};
 }
 
 }  // namespace
 }  // namespace lamella
 
 int main(int argc, char** argv) {
-  return lamella::write_tables(argc, argv, "lamella_multidomain_cases", lamella::regenerate);
+  using namespace lamella;
+  if (argc < 2) {
+    std::fprintf(stderr,
+                 "usage: lamella_multidomain_cases FOLDER [PARTS] [exact|fuzzy] [NAME]..., the "
+                 "folder that holds multidomain.md, that of the CAD files, one of the tables, and "
+                 "beginnings of the names of rows\n");
+    return exit_code(Code::usage);
+  }
+  const Result<void> done = regenerate(wanted({argv + 1, argv + argc}));
+  if (done) return 0;
+  std::fprintf(stderr, "%s %s\n", done.error().message.c_str(), done.error().hint.c_str());
+  return exit_code(done.error().code);
 }

@@ -15,6 +15,7 @@
 #include "core/mesh/sample_meshes.h"
 #include "core/mesh/validate.h"
 #include "core/multidomain/balance.h"
+#include "core/multidomain/hold.h"
 #include "tests/support/adapt_cases.h"
 #include "tests/support/sample_surfaces.h"
 
@@ -438,6 +439,20 @@ TEST(BalanceBorders, ABallKeepsItsVolume) {
   balance_borders(again, partition, exact.first_face, {1e-3 * c.tolerance, c.tolerance});
   for (std::size_t n = 1; n < again.points.size(); ++n)
     ASSERT_LE((again.points[n] - exact.mesh.points[n]).norm(), 1.01e-3 * c.tolerance);
+}
+
+TEST(OntoWall, EndsOfLinesGoToTheWallAlongTheirBorders) {
+  const Partition<3> halves({{"low", half_space_zone<3>(Vec<3>(1, 0, 1), 1.3)},
+                             {"side", half_space_zone<3>(Vec<3>(0, 1, 0), 0.25)}});
+  const Locator<3> wall(box_surface({1, 1, 1}));
+  const double reach = 0.01, on = 1e-4;
+  // Below the top, on both borders: up along the line that they share.
+  const Vec<3> end = onto_wall(wall, halves, {0.306, 0.25, 0.994}, reach, on);
+  EXPECT_LT((end - Vec<3>(0.3, 0.25, 1)).norm(), 1e-9);
+  // On none: the nearest point; too far: as it was.
+  EXPECT_LT((onto_wall(wall, halves, {0.6, 0.6, 0.994}, reach, on) - Vec<3>(0.6, 0.6, 1)).norm(),
+            1e-12);
+  EXPECT_EQ(onto_wall(wall, halves, {0.4, 0.25, 0.9}, reach, on), Vec<3>(0.4, 0.25, 0.9));
 }
 
 TEST(BalanceBorders, FlatSidesAndSharpEdgesStay) {

@@ -56,6 +56,13 @@ TEST(Partition, APointBetweenCellsBelongsToOneOfThem) {
   EXPECT_GT(border, 100);
 }
 
+TEST(Partition, APointThatRoundingPutsBesideABodyBelongsToIt) {
+  const Partition<3> p({{"block", box_zone<3>({-30, -30, 0}, {30, 30, 60})}});
+  for (const double off : {-1e-9, 0.0, 1e-15, 1e-9})
+    EXPECT_EQ(p.region_of({7, -8, -off}), 0) << off;
+  EXPECT_EQ(p.region_of({7, -8, -1e-6}), p.background());
+}
+
 TEST(Partition, ItsDistancesAreNegativeInOneRegionOnlyAndThatIsTheOwner) {
   const Partition<3> p = crowded();
   std::mt19937_64 random(3);
