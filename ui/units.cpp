@@ -23,7 +23,7 @@ void Units::set_inches(bool on) {
 QString written(double value, char format, int digits) {
   QLocale locale;
   locale.setNumberOptions(locale.numberOptions() | QLocale::OmitGroupSeparator);
-  return locale.toString(value, format, digits);
+  return locale.toString(value, format, digits).toLower();  // it writes 1E-07
 }
 
 namespace units {
