@@ -93,10 +93,12 @@ void tell_end(const Outcome& outcome, const Report& report, const std::string& s
 }
 
 /// The project with the mesh in it. Notes of its writer are told.
-Result<void> write_project(const Job& job, const std::string& output, const Made& made,
-                           const Progress& progress, Console& console) {
+Result<void> write_project(const Job& job, const std::vector<Part>& parts,
+                           const std::string& output, const Made& made, const Progress& progress,
+                           Console& console) {
   ProjectContent content;
   content.study = job.study;
+  content.faces = known_faces(job.study, parts);
   content.copies = job.copies;
   content.write_mesh = [&](const fs::path& vtu) -> Result<void> {
     Result<ExportCertificate> proof =
@@ -185,7 +187,7 @@ Result<Made> make_mesh(const Job& job, const std::vector<Part>& parts, const Pro
   Made made{std::move(*outcome), std::move(*report)};
   for (const std::string& output : job.outputs) {
     if (!is_project(output)) continue;
-    Result<void> written = write_project(job, output, made, closing, console);
+    Result<void> written = write_project(job, parts, output, made, closing, console);
     if (!written) return written.error();
   }
   if (!job.report.empty())

@@ -181,6 +181,11 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
   Result<std::vector<Part>> parts =
       load_all(request->files, study, load, progress.portion(0, 0.05));
   if (!parts) return console.fail(parts.error());
+  // Those of the command line are behind those of the study, and mean the parts of today.
+  Study& saved = request->project.study;
+  if (!saved.inputs.empty()) tell_notes(fit_to_parts(saved, c.inputs.front(), *parts), console);
+  std::copy(saved.groups.begin(), saved.groups.end(), study.groups.begin());
+  std::copy(saved.sizing.begin(), saved.sizing.end(), study.sizing.begin());
   if (Result<void> applied = apply_to_bodies(c, *parts, study); !applied)
     return console.fail(applied.error());
 

@@ -128,7 +128,7 @@ class StudyRun {
                    "Add the parts to \"inputs\"."};
     if (Result<void> loaded = load(project_.study, progress_.portion(0.02, 0.05)); !loaded)
       return loaded;
-    tell_notes(unmatched(project_.study, parts_), console_);
+    tell_notes(fit_to_parts(project_.study, c_.study, parts_), console_);
     // Every body has an entry from here on, as in the window.
     arrange_bodies(project_.study, parts_);
     // A path that is wrong is told before the first mesh, not by it.

@@ -454,8 +454,8 @@ void MainWindow::update_status() {
     QString text = tr("%L1 nodes     %L2 elements").arg(record.nodes).arg(record.elements);
     if (record.layers.places > 0)
       text += tr("     layers %1 (5 %: %2)")
-                  .arg(record.layers.mean, 0, 'f', 1)
-                  .arg(record.layers.p5, 0, 'f', 1);
+                  .arg(written(record.layers.mean, 'f', 1))
+                  .arg(written(record.layers.p5, 'f', 1));
     if (record.mixed > 0) text += tr("     %L1 mixed").arg(record.mixed);
     counts_->setText(text);
   } else if (session_->has_bodies()) {
@@ -494,9 +494,10 @@ void MainWindow::update_status() {
   } else if (session_->outdated()) {
     state_->setText(tr("Settings changed since this mesh: run again"));
   } else if (const auto& outcome = session_->outcome()) {
-    state_->setText(outcome->cancelled   ? tr("Cancelled, best mesh kept")
-                    : outcome->converged ? tr("Converged in %1 s").arg(outcome->seconds, 0, 'f', 1)
-                                         : tr("Stopped at the iteration limit"));
+    state_->setText(outcome->cancelled ? tr("Cancelled, best mesh kept")
+                    : outcome->converged
+                        ? tr("Converged in %1 s").arg(written(outcome->seconds, 'f', 1))
+                        : tr("Stopped at the iteration limit"));
   } else {
     state_->setText(!session_->has_bodies() ? tr("Mesh opened") : tr("Ready to run"));
   }

@@ -1,5 +1,6 @@
 #include "ui/units.h"
 
+#include <QLocale>
 #include <QSettings>
 #include <cmath>
 
@@ -19,18 +20,25 @@ void Units::set_inches(bool on) {
   Q_EMIT changed();
 }
 
+QString written(double value, char format, int digits) {
+  QLocale locale;
+  locale.setNumberOptions(locale.numberOptions() | QLocale::OmitGroupSeparator);
+  return locale.toString(value, format, digits).toLower();  // it writes 1E-07
+}
+
 namespace units {
 
 double per_unit() { return Units::get().inches() ? 25.4 : 1; }
 
 QString name() { return Units::get().inches() ? QStringLiteral("in") : QStringLiteral("mm"); }
 
-QString number(double mm, int digits) { return QString::number(mm / per_unit(), 'g', digits); }
+QString number(double mm, int digits) { return written(mm / per_unit(), 'g', digits); }
 
 QString point(const Vec<3>& mm, int digits) {
   const double none = 1e-6 * mm.cwiseAbs().maxCoeff();
   const auto text = [&](double x) { return number(std::abs(x) < none ? 0 : x, digits); };
-  return QString("(%1, %2, %3)").arg(text(mm[0]), text(mm[1]), text(mm[2]));
+  const QString next = QLocale().decimalPoint() == "," ? "; " : ", ";
+  return "(" + text(mm[0]) + next + text(mm[1]) + next + text(mm[2]) + ")";
 }
 
 QString length(double mm, int digits) { return number(mm, digits) + " " + name(); }

@@ -25,6 +25,10 @@ class Units : public QObject {
   bool inches_ = false;
 };
 
+/// A number as the language writes it, without groups of digits; `format` and `digits` as in
+/// QString::number.
+QString written(double value, char format = 'g', int digits = 4);
+
 namespace units {
 
 /// mm that one unit has: 1 or 25.4.
@@ -34,7 +38,8 @@ QString name();
 /// A length in the unit, without its name, and with it: `digits` significant ones.
 QString number(double mm, int digits = 4);
 QString length(double mm, int digits = 4);
-/// "(x, y, z)" without the unit; what is nothing beside the largest of them is 0.
+/// "(x, y, z)" without the unit, with semicolons where numbers have commas; what is nothing beside
+/// the largest of them is 0.
 QString point(const Vec<3>& mm, int digits = 4);
 /// "40 × 30 × 2 mm"
 QString size(const Vec<3>& mm, int digits = 4);

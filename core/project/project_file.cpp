@@ -25,6 +25,7 @@ constexpr const char* kMesh = "mesh.vtu";
 constexpr const char* kMeshStudy = "mesh.json";
 constexpr const char* kReportJson = "report.json";
 constexpr const char* kReportHtml = "report.html";
+constexpr const char* kFaces = "faces.json";
 
 /// A study of 100,000 zones has a quarter of it; read as JSON it takes sixteen times its size.
 constexpr std::uint64_t kLongestText = 32 << 20;
@@ -361,6 +362,18 @@ Result<void> prove(const fs::path& written, const std::vector<NewEntry>& entries
   return {};
 }
 
+/// What a project tells of its faces; empty: nothing.
+Result<std::vector<KnownFaces>> faces_of(const fs::path& file) {
+  const Result<Archive> archive = Archive::open(file);
+  if (!archive) return archive.error();
+  const ArchiveEntry* entry = archive->find(kFaces);
+  if (!entry) return std::vector<KnownFaces>();
+  const Result<std::string> text = archive->read(*entry, kLongestText);
+  if (!text) return text.error();
+  if (depth_of(*text) > kDeepestText) return refuse(file, "it is nested too deep", "");
+  return known_faces_from(*text);
+}
+
 }  // namespace
 
 bool is_project(const fs::path& file) { return ending_of(file) == ".lamella"; }
@@ -413,6 +426,7 @@ Result<std::vector<std::string>> save_project(const ProjectContent& content, con
     }
   }
   if (study.embed_inputs) embed(content, study, entries, notes);
+  if (!content.faces.empty()) entries.push_back({kFaces, known_faces_json(content.faces)});
   const std::string text = study_to_json(study);
   entries.front() = {kStudy, text};
 
@@ -439,6 +453,32 @@ Study seen_from(Study study, const fs::path& folder) {
     input->file = near ? relative.string() : absolute.string();
   }
   return study;
+}
+
+std::vector<std::string> fit_to_parts(Study& study, const fs::path& file,
+                                      const std::vector<Part>& parts) {
+  std::vector<std::string> notes;
+  const Result<Project> saved = open_project_head(file);
+  bool changed = false;
+  for (std::size_t k = 0; saved && k < saved->study.inputs.size(); ++k) {
+    const std::string& before = saved->study.inputs[k].sha256;
+    changed =
+        changed || (k < study.inputs.size() && !before.empty() && before != study.inputs[k].sha256);
+  }
+  if (changed && !known_faces(study, parts).empty()) {
+    const Result<std::vector<KnownFaces>> faces = faces_of(file);
+    if (faces && !faces->empty()) {
+      notes = move_faces(study, *faces, parts);
+      notes.insert(
+          notes.begin(),
+          "What is asked of faces by number goes to the faces that are in their place now.");
+    } else {
+      notes.emplace_back(
+          "It does not tell where its faces were: see whether their numbers are still the same.");
+    }
+  }
+  for (std::string& note : unmatched(study, parts)) notes.push_back(std::move(note));
+  return notes;
 }
 
 std::vector<std::string> unmatched(const Study& study, const std::vector<Part>& parts) {

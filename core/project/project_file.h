@@ -10,6 +10,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/study/moved_faces.h"
 #include "core/study/study.h"
 
 namespace lamella {
@@ -26,6 +27,8 @@ struct ProjectContent {
   std::optional<Study> mesh_study{};  ///< the study the mesh was made of; unset: `study`
   std::string report_json{};          ///< of the run that made it; empty: none
   std::string report_html{};
+  /// Where the faces are that the study asks for by number, should the CAD change; see known_faces.
+  std::vector<KnownFaces> faces{};
 };
 
 /// A project or study that was opened. Holds the folder of what was unpacked, which goes with the
@@ -69,6 +72,12 @@ Result<std::vector<std::string>> save_project(const ProjectContent& content,
 /// The study with its inputs as they are found from `folder`: relative where they lie in it, else
 /// absolute.
 Study seen_from(Study study, const std::filesystem::path& folder);
+
+/// Makes the study of a project that was opened from `file` fit the parts of its inputs: where an
+/// input is not what it was when the project was saved, what asks for faces by number goes to the
+/// faces that are in their place now. Returns notes for the user, those of `unmatched` among them.
+std::vector<std::string> fit_to_parts(Study& study, const std::filesystem::path& file,
+                                      const std::vector<Part>& parts);
 
 /// What the settings name that the parts do not have, bodies and faces, for the user; nothing where
 /// all is found.

@@ -97,6 +97,15 @@ TEST_F(ActionsTest, TheViewIsTurnedCutAndFitted) {
   const QImage with_lines = window_.view().picture();
   action(Act::features)->setChecked(false);
   EXPECT_GT(difference(with_lines, window_.view().picture()), 1e-3);
+  // A new section can be seen from where one looks.
+  for (const Act look : {Act::view_front, Act::view_left, Act::view_top, Act::view_iso}) {
+    action(look)->trigger();
+    action(Act::section)->setChecked(true);
+    ASSERT_TRUE(window_.view().section());
+    EXPECT_LT(window_.view().section()->normal.dot(looks()), -0.25)
+        << action(look)->text().toStdString();
+    session().remove_item({ItemKind::cut, 0});
+  }
   for (const auto& [act, axis] : {std::pair(Act::section_y, 1), std::pair(Act::section_z, 2)}) {
     action(act)->trigger();
     EXPECT_EQ(std::abs(window_.view().section()->normal[axis]), 1);

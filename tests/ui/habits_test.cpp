@@ -262,7 +262,11 @@ TEST_F(HabitsTest, SpeaksFrenchWhenAskedTo) {
     EXPECT_EQ(window.actions()[Act::run]->text(), QString::fromUtf8("&Lancer"));
     EXPECT_EQ(QString(Session::tr("%1 bodies")).arg(3), "3 corps");
     EXPECT_EQ(role_title(BodyRole::mold), "moule");
+    // One comma everywhere, and coordinates that can still be told apart.
     EXPECT_EQ(QString("%L1").arg(0.5), "0,5");
+    EXPECT_EQ(units::length(1.25), "1,25 mm");
+    EXPECT_EQ(units::size({1.5, 2, 3}), QString::fromUtf8("1,5 × 2 × 3 mm"));
+    EXPECT_EQ(units::point({1.5, 2, 3}), "(1,5; 2; 3)");
     // A few words are the same in both.
     int same = 0;
     for (int a = 0; a < int(Act::count); ++a)
@@ -279,6 +283,7 @@ TEST_F(HabitsTest, SpeaksFrenchWhenAskedTo) {
       window.grab().save(folder + "/french.png");
     }
   }
+  EXPECT_EQ(units::point({1.5, 2, 3}), "(1.5, 2, 3)");
   MainWindow window(fake_.make());
   EXPECT_EQ(window.actions()[Act::run]->text(), action(Act::run)->text());
 }

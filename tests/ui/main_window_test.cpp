@@ -8,6 +8,7 @@
 #include <QSpinBox>
 #include <QTreeView>
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "core/study/study_file.h"
@@ -513,6 +514,9 @@ TEST_F(MainWindowTest, MeshFileIsShownWithoutParts) {
   window_.open_files({QString::fromStdString((folder_ / "any.msh").string())});
   ASSERT_TRUE(wait_idle());
   EXPECT_EQ(window_.view().scene()->shown_elements(), 4u * 3 * 2 * 6);
+  // Without its metric nothing is known of what counts in it, least of all that it is 0.
+  EXPECT_TRUE(std::isnan(session().iterations()[0].record.quality_min));
+  EXPECT_TRUE(std::isnan(session().iterations()[0].record.conformity));
   EXPECT_FALSE(action(Act::run)->isEnabled());
   EXPECT_TRUE(action(Act::export_mesh)->isEnabled());
 }

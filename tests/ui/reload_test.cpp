@@ -100,15 +100,18 @@ TEST_F(ReloadTest, CorrectionsNearAGateSurviveWhatTheCadHasBecome) {
 }
 
 TEST_F(ReloadTest, AStudyOfACadThatChangedIsOpenedWithItsCorrections) {
-  const std::int32_t gate = face_at(40);
+  const std::int32_t before = face_at(40);
   session().save(folder_ / "s.lamella");
   ASSERT_TRUE(wait_idle());
-  write({40, 30, 3}, false);
+  write({40, 30, 3}, true);
   window_.open_files({QString::fromStdString((folder_ / "s.lamella").string())});
   ASSERT_TRUE(wait_idle());
   EXPECT_NEAR(thickness(), 3, 1e-4);
-  expect_corrections(gate);
+  const std::int32_t now = face_at(40);
+  ASSERT_NE(before, now) << "this test is for numbers that changed";
+  expect_corrections(now);
   EXPECT_TRUE(window_.banner().hint().contains("has changed"));
+  EXPECT_TRUE(window_.banner().hint().contains("in their place now"));
 }
 
 TEST_F(ReloadTest, WhatHasNotChangedIsNoStepToUndo) {

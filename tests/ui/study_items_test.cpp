@@ -250,7 +250,7 @@ TEST_F(StudyItemsTest, InputsThatChangedOrWentAreTold) {
   ASSERT_EQ(noticed.count(), 1);
   const QString changed = noticed.takeFirst().at(1).toString();
   EXPECT_TRUE(changed.contains("plate.step\" has changed")) << changed.toStdString();
-  EXPECT_TRUE(changed.contains("no face 77")) << changed.toStdString();
+  EXPECT_TRUE(changed.contains("no face like number 77")) << changed.toStdString();
   EXPECT_TRUE(window_.banner().isVisible());
   EXPECT_EQ(session().body(0).layers, 6);
   EXPECT_EQ(study_to_json(session().study()).find(sha256(step)), std::string::npos);

@@ -7,6 +7,7 @@
 #include "core/study/domain.h"
 #include "ui/box_of.h"
 #include "ui/session/session.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 namespace {
@@ -242,7 +243,7 @@ void show_all_bodies(Session& session) {
 
 QString domain_title(const StudyDomain& domain) {
   if (const auto* margin = std::get_if<DomainMargin>(&domain.shape))
-    return Texts::tr("Box, margin %1 %").arg(100 * margin->share, 0, 'g', 4);
+    return Texts::tr("Box, margin %1 %").arg(written(100 * margin->share, 'g', 4));
   if (const auto* body = std::get_if<DomainBody>(&domain.shape))
     return Texts::tr("Inside of %1").arg(QString::fromStdString(body->name));
   if (std::holds_alternative<ZoneBox>(domain.shape)) return Texts::tr("Box");

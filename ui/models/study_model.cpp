@@ -203,15 +203,15 @@ QVariant StudyModel::body_data(int row, int column, int role) const {
   } else {
     const BodyOutcome* made = outcome(row);
     const bool any = made && made->layers.places > 0;
-    if (role == Qt::DisplayRole) return any ? QString::number(made->layers.mean, 'f', 1) : "–";
+    if (role == Qt::DisplayRole) return any ? written(made->layers.mean, 'f', 1) : "–";
     if (role == Qt::ForegroundRole)
       return !any                                     ? theme::faint_text
              : made->layers.mean < made->layers_asked ? theme::warning
                                                       : theme::good;
     if (role == Qt::ToolTipRole)
       return any ? tr("Layers measured in the mesh: %1 on average, 5 % of the walls below %2")
-                       .arg(made->layers.mean, 0, 'f', 2)
-                       .arg(made->layers.p5, 0, 'f', 2)
+                       .arg(written(made->layers.mean, 'f', 2))
+                       .arg(written(made->layers.p5, 'f', 2))
                  : tr("Layers measured in the mesh, once there is one");
   }
   return {};
@@ -247,7 +247,7 @@ QVariant StudyModel::sizing_data(int row, int column, int role) const {
       return QString("%1 × %2").arg(layer->layers).arg(units::length(layer->thickness, 3));
     const auto& asked = std::get<SizeCorrection>(object.asks);
     return asked.size ? units::length(*asked.size, 3)
-                      : tr("× %1").arg(asked.factor.value_or(1), 0, 'g', 3);
+                      : tr("× %1").arg(written(asked.factor.value_or(1), 'g', 3));
   }
   return {};
 }

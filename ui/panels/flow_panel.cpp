@@ -348,8 +348,7 @@ void FlowPanel::refresh() {
   weight_title_->setText(gradient ? tr("Strength") : tr("Mean error"));
   weight_->setToolTip(gradient ? tr("To the right the flow asks for smaller sizes")
                                : tr("To the right the mean error is to be smaller"));
-  weight_text_->setText(gradient ? QString::number(weight, 'g', 2)
-                                 : QString("× %1").arg(flow.beta, 0, 'g', 2));
+  weight_text_->setText(gradient ? written(weight, 'g', 2) : "× " + written(flow.beta, 'g', 2));
   const auto state = session_.shown_state();
   // A run needs the processors.
   if (session_.activity() == Activity::running) worker_.cancel();
@@ -381,7 +380,7 @@ QString FlowPanel::preview_text() const {
   return tr("About %L1 nodes instead of %L2, × %3.")
       .arg(preview_->nodes_after, 0, 'f', 0)
       .arg(preview_->nodes_before, 0, 'f', 0)
-      .arg(preview_->nodes_after / preview_->nodes_before, 0, 'f', 2);
+      .arg(written(preview_->nodes_after / preview_->nodes_before, 'f', 2));
 }
 
 void FlowPanel::count() {
@@ -425,7 +424,7 @@ QString FlowPanel::result_text() const {
   if (laid) {
     const bool step = adds_gradient(session_.study().flow->method);
     line(step ? tr("change along an edge, mean") : tr("indicator, mean"),
-         QString::number(flow->mean_indicator(), 'g', 3));
+         written(flow->mean_indicator(), 'g', 3));
     if (flow->outside > 0)
       line(tr("nodes beside the result"),
            tr("%L1, up to %2").arg(flow->outside).arg(units::length(flow->farthest, 3)));
@@ -433,7 +432,7 @@ QString FlowPanel::result_text() const {
     if (before >= 0)
       if (const auto& old = session_.iterations()[std::size_t(before)].state;
           old && old->flow && is_of(*old->flow, *session_.study().flow))
-        line(tr("one iteration before"), QString::number(old->flow->mean_indicator(), 'g', 3));
+        line(tr("one iteration before"), written(old->flow->mean_indicator(), 'g', 3));
   }
   html = QString("<table cellspacing='0'>%1</table>").arg(html);
   if (!result)
@@ -474,14 +473,14 @@ void FlowPanel::show_flow() {
             cell((o.rate < 0 ? tr("in by %1") : tr("out by %1"))
                      .arg(QString::fromStdString(o.group).toHtmlEscaped()),
                  false) +
-            cell(QString::number(std::abs(o.rate), 'g', 6), true) +
-            cell(QString::number(o.pressure, 'g', 4), true) + "</tr>";
+            cell(written(std::abs(o.rate), 'g', 6), true) +
+            cell(written(o.pressure, 'g', 4), true) + "</tr>";
   html += "</table>";
   if (!flow->residuals.empty())
     html += "<p>" +
             tr("%1 iterations; %2 of what enters is lost.")
                 .arg(flow->residuals.size() - 1)
-                .arg(flow->imbalance, 0, 'g', 2) +
+                .arg(written(flow->imbalance, 'g', 2)) +
             "</p>";
   found_->setText(html);
 }

@@ -151,7 +151,7 @@ QString OverlapPanel::found_html() const {
   }
   return html +
          QString("<p style='color:%1'>%2</p>")
-             .arg(theme::soft_text.name(), tr("Found in %1 s").arg(check.seconds, 0, 'f', 1));
+             .arg(theme::soft_text.name(), tr("Found in %1 s").arg(written(check.seconds, 'f', 1)));
 }
 
 void OverlapPanel::jump(const QUrl& to) {

@@ -9,6 +9,7 @@
 #include "ui/panels/save_figures.h"
 #include "ui/session/session.h"
 #include "ui/theme.h"
+#include "ui/units.h"
 #include "ui/views/color_map.h"
 
 namespace lamella::ui {
@@ -98,8 +99,8 @@ void QualityPanel::paintEvent(QPaintEvent*) {
   QString title = tr("Quality of the elements, 1 is best");
   if (range_ && all > 0)
     title += tr("     %1 to %2: %L3 of %L4 elements")
-                 .arg(range_->first, 0, 'f', 2)
-                 .arg(range_->second, 0, 'f', 2)
+                 .arg(written(range_->first, 'f', 2))
+                 .arg(written(range_->second, 'f', 2))
                  .arg(chosen)
                  .arg(all);
   painter.drawText(QPointF(18, 22), title);
@@ -135,7 +136,7 @@ void QualityPanel::paintEvent(QPaintEvent*) {
   painter.setPen(theme::soft_text);
   for (int k = 0; k <= 5; ++k)
     painter.drawText(QRectF(box.left() + box.width() * k / 5 - 30, box.bottom() + 6, 60, 18),
-                     Qt::AlignHCenter | Qt::AlignTop, QString::number(0.2 * k));
+                     Qt::AlignHCenter | Qt::AlignTop, written(0.2 * k));
   if (begun_) {
     QColor fill = theme::accent;
     fill.setAlpha(45);

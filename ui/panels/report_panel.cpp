@@ -47,7 +47,7 @@ void ReportPanel::refresh() {
       QString(
           "<p><b>%1</b> <span style='color:%3'>%2</span> &nbsp; <a style='color:%5' "
           "href='save'>%4</a></p>")
-          .arg(state, tr("in %1 s").arg(outcome->seconds, 0, 'f', 1), theme::soft_text.name(),
+          .arg(state, tr("in %1 s").arg(written(outcome->seconds, 'f', 1)), theme::soft_text.name(),
                tr("Save as PDF or HTML…"), theme::accent.name());
   html += "<table cellspacing='0'><tr style='color:" + theme::soft_text.name() + "'>";
   const QStringList titles{tr("Body"),
@@ -73,11 +73,11 @@ void ReportPanel::refresh() {
     html += "<tr><td style='padding: 4px 10px 4px 0; white-space: nowrap'><b>" +
             name.toHtmlEscaped() + "</b></td>";
     html += cell(QString::number(body.layers_asked));
-    html += cell(QString::number(body.layers.mean, 'f', 2));
-    html += cell(QString::number(body.layers.p5, 'f', 2));
-    html += cell(QString::number(body.layers.p50, 'f', 2));
-    html += cell(tr("%1 %").arg(body.layers.share_reached * 100, 0, 'f', 1));
-    html += cell(tr("%1 %").arg(off, 0, 'f', 3));
+    html += cell(written(body.layers.mean, 'f', 2));
+    html += cell(written(body.layers.p5, 'f', 2));
+    html += cell(written(body.layers.p50, 'f', 2));
+    html += cell(tr("%1 %").arg(written(body.layers.share_reached * 100, 'f', 1)));
+    html += cell(tr("%1 %").arg(written(off, 'f', 3)));
     html += cell(fuzzy ? tr("–")
                        : tr("%1 of %2")
                              .arg(units::number(body.boundary_distance.largest(), 3),
@@ -112,7 +112,7 @@ QString ReportPanel::interfaces_html() const {
   for (const BodyOutcome& body : outcome.bodies)
     html += "<tr><td style='padding: 4px 12px 4px 0'>" +
             QString::fromStdString(body.name).toHtmlEscaped() + "</td>" +
-            cell(tr("interface error %1 %").arg(100 * body.interface_error, 0, 'f', 2)) +
+            cell(tr("interface error %1 %").arg(written(100 * body.interface_error, 'f', 2))) +
             cell(tr("%1 across its borders").arg(units::length(body.interface_size, 3))) + "</tr>";
   return html + "</table>";
 }
@@ -134,7 +134,7 @@ QString ReportPanel::places_html() const {
                        .arg(b)
                        .arg(k)
                        .arg(tr("Show"), theme::accent.name())) +
-              cell(tr("%1 layers").arg(below[k].layers, 0, 'f', 1)) +
+              cell(tr("%1 layers").arg(written(below[k].layers, 'f', 1))) +
               cell(tr("on %1").arg(units::area(below[k].area))) +
               cell(tr("near %1").arg(units::point(below[k].at))) + "</tr>";
     html += "</table>";
@@ -154,9 +154,10 @@ void ReportPanel::jump(const QUrl& link) {
   if (b >= outcome->bodies.size() || k >= outcome->bodies[b].below.size()) return;
   const PlaceBelow& place = outcome->bodies[b].below[k];
   // So much around it that its surroundings are recognized.
-  session_.show_place(
-      place.at, 3 * std::sqrt(std::max(place.area, 1e-6)),
-      tr("%1 of %2 layers").arg(place.layers, 0, 'f', 1).arg(outcome->bodies[b].layers_asked));
+  session_.show_place(place.at, 3 * std::sqrt(std::max(place.area, 1e-6)),
+                      tr("%1 of %2 layers")
+                          .arg(written(place.layers, 'f', 1))
+                          .arg(outcome->bodies[b].layers_asked));
 }
 
 }  // namespace lamella::ui

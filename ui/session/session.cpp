@@ -2,8 +2,10 @@
 
 #include <QSettings>
 #include <algorithm>
+#include <limits>
 
 #include "core/geometry/triangles.h"
+#include "core/study/measure.h"
 #include "core/study/report.h"
 #include "core/study/study_file.h"
 #include "ui/box_of.h"
@@ -34,15 +36,19 @@ QString box_size(const ReferenceSurface<3>& surface) {
   return units::size(box.hi - box.lo);
 }
 
-/// A mesh of which no more than itself is known.
-Iteration iteration_of(std::shared_ptr<const MeshState> state,
-                       std::shared_ptr<const PreparedMesh> prepared) {
-  Iteration iteration;
-  iteration.record.nodes = state->mesh.node_count();
-  iteration.record.elements = state->mesh.element_count();
-  iteration.state = std::move(state);
-  iteration.prepared = std::move(prepared);
-  return iteration;
+/// A mesh of which no more than itself is known. What counts in its metric is measured where it has
+/// one, else not a number: any other metric would give other values.
+IterationRecord measured(MeshState& state) {
+  if (!state.metric.empty())
+    if (Result<IterationRecord> record = measure(state)) return *record;
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  IterationRecord record;
+  record.nodes = state.mesh.node_count();
+  record.elements = state.mesh.element_count();
+  record.quality_min = record.quality_mean = record.conformity = record.unit_edges = unknown;
+  if (!state.quality.empty())
+    record.quality_min = *std::min_element(state.quality.begin(), state.quality.end());
+  return record;
 }
 
 }  // namespace
@@ -238,6 +244,7 @@ void Session::open_study(const std::filesystem::path& file,
       ReadParts read;
       LoadParams params;
       std::shared_ptr<MeshState> mesh;
+      IterationRecord record;
       std::shared_ptr<const PreparedMesh> prepared;
       std::optional<Error> unread;  // why there is none
     };
@@ -262,7 +269,10 @@ void Session::open_study(const std::filesystem::path& file,
           opened.mesh = std::make_shared<MeshState>(std::move(*state));
         else
           opened.unread = state.error();
-        if (opened.mesh) opened.prepared = prepare(opened.mesh);
+        if (opened.mesh) {
+          opened.record = measured(*opened.mesh);
+          opened.prepared = prepare(opened.mesh);
+        }
       }
       return opened;
     };
@@ -272,7 +282,7 @@ void Session::open_study(const std::filesystem::path& file,
       if (!opened) return report(opened.error());
       project_ = std::move(opened->project);
       std::vector<std::string> notes = project_.notes;
-      for (std::string& note : unmatched(project_.study, opened->read.parts))
+      for (std::string& note : fit_to_parts(project_.study, file, opened->read.parts))
         notes.push_back(std::move(note));
       read_with_ = opened->params;
       replace_all(project_.study, std::move(opened->read), 0);
@@ -286,7 +296,7 @@ void Session::open_study(const std::filesystem::path& file,
         Study made_of = *project_.mesh_study;
         arrange_bodies(made_of, *parts_);
         run_study_ = std::make_shared<const Study>(std::move(made_of));
-        Iteration iteration = iteration_of(opened->mesh, opened->prepared);
+        Iteration iteration{opened->record, opened->mesh, opened->prepared};
         take_report(iteration);
         add_iteration(std::move(iteration));
       }
@@ -302,12 +312,13 @@ void Session::save(const std::filesystem::path& file) {
   if (activity_ != Activity::idle || !has_bodies()) return;
   const auto state = shown_state();
   begin(Activity::saving,
-        [this, file, state, study = study_, made_of = run_study_, outcome = outcome_,
-         opened = project_, opened_mesh = opened_mesh_,
+        [this, file, state, study = study_, parts = parts_, made_of = run_study_,
+         outcome = outcome_, opened = project_, opened_mesh = opened_mesh_,
          context = report_context(file)](const Progress& progress) -> Worker::Done {
           ProjectContent content;
           content.study = *study;
           content.copies = opened.copies;
+          content.faces = known_faces(*study, *parts);
           if (state) {
             if (made_of) content.mesh_study = *made_of;
             content.write_mesh = [&](const std::filesystem::path& vtu) -> Result<void> {
@@ -379,20 +390,20 @@ void Session::open_mesh(const std::filesystem::path& file) {
   Q_EMIT logged(tr("Opening the mesh %1").arg(file_name(file)));
   begin(Activity::loading, [this, file](const Progress&) -> Worker::Done {
     Result<MeshState> read = services_.read_mesh(file);
-    std::shared_ptr<const MeshState> state;
-    std::shared_ptr<const PreparedMesh> prepared;
+    Iteration opened;
     if (read) {
-      state = std::make_shared<MeshState>(std::move(*read));
-      prepared = prepare(state);
+      opened.record = measured(*read);
+      opened.state = std::make_shared<const MeshState>(std::move(*read));
+      opened.prepared = prepare(opened.state);
     }
-    return [this, read = std::move(read), state, prepared, file] {
+    return [this, read = std::move(read), opened = std::move(opened), file] {
       set_activity(Activity::idle);
       if (!read) return report(read.error());
       Study study;
       study.name = file.stem().string();
       project_ = {};
       replace_all(std::move(study), {}, 0);
-      add_iteration(iteration_of(state, prepared));
+      add_iteration(opened);
     };
   });
 }
@@ -567,13 +578,13 @@ void Session::run() {
                                   .arg(record.iteration)
                                   .arg(record.nodes)
                                   .arg(record.elements)
-                                  .arg(record.layers.mean, 0, 'f', 1)
-                                  .arg(record.layers.p5, 0, 'f', 1)
-                                  .arg(record.seconds, 0, 'f', 1));
+                                  .arg(written(record.layers.mean, 'f', 1))
+                                  .arg(written(record.layers.p5, 'f', 1))
+                                  .arg(written(record.seconds, 'f', 1)));
                 if (record.mixed > 0)
                   Q_EMIT logged(tr("%L1 mixed elements, interface error %2")
                                     .arg(record.mixed)
-                                    .arg(record.interface_error, 0, 'f', 4));
+                                    .arg(written(record.interface_error, 'f', 4)));
                 add_iteration({record, state, prepared});
               });
             },
@@ -602,16 +613,16 @@ void Session::finish_run(Result<Outcome> result, std::shared_ptr<const PreparedM
     Q_EMIT logged(tr("%1: first mesh by %2, layers %3 asked, %4 on average (5 %: %5)")
                       .arg(text(body.name), text(body.first_mesh_by))
                       .arg(body.layers_asked)
-                      .arg(body.layers.mean, 0, 'f', 2)
-                      .arg(body.layers.p5, 0, 'f', 2));
+                      .arg(written(body.layers.mean, 'f', 2))
+                      .arg(written(body.layers.p5, 'f', 2)));
     for (const std::string& note : body.notes) Q_EMIT logged(text(body.name + ": " + note));
   }
-  Q_EMIT logged(
-      outcome_->cancelled ? tr("Cancelled after %1 s; the best mesh so far is kept.")
-                                .arg(outcome_->seconds, 0, 'f', 1)
-      : outcome_->converged
-          ? tr("Converged in %1 s.").arg(outcome_->seconds, 0, 'f', 1)
-          : tr("Stopped after %1 s at the limit of iterations.").arg(outcome_->seconds, 0, 'f', 1));
+  Q_EMIT logged(outcome_->cancelled ? tr("Cancelled after %1 s; the best mesh so far is kept.")
+                                          .arg(written(outcome_->seconds, 'f', 1))
+                : outcome_->converged
+                    ? tr("Converged in %1 s.").arg(written(outcome_->seconds, 'f', 1))
+                    : tr("Stopped after %1 s at the limit of iterations.")
+                          .arg(written(outcome_->seconds, 'f', 1)));
   Q_EMIT run_finished();
 }
 

@@ -160,7 +160,8 @@ void Session::reload() {
           if (!changed) return Q_EMIT noticed(tr("The parts are as their files have them."), {});
           Study study = *study_;
           study.inputs = std::move(inputs);
-          std::vector<std::string> notes = move_faces(study, *parts_, made->parts);
+          std::vector<std::string> notes =
+              move_faces(study, known_faces(study, *parts_), made->parts);
           for (std::string& note : unmatched(study, made->parts)) notes.push_back(note);
           arrange_bodies(study, made->parts);
           const std::size_t count = made->parts.size();

@@ -96,8 +96,8 @@ void Session::solve_flow() {
             if (fields.components == 0)
               Q_EMIT logged(tr("Flow: %1 iterations, %2 mm³/s, %3 s")
                                 .arg(fields.residuals.size() - 1)
-                                .arg(fields.rate(), 0, 'g', 5)
-                                .arg(seconds, 0, 'f', 1));
+                                .arg(written(fields.rate(), 'g', 5))
+                                .arg(written(seconds, 'f', 1)));
             // It is the same mesh for the report as well.
             if (outcome_ && outcome_->state == state) outcome_->state = flowing;
             if (opened_mesh_ == state) opened_mesh_ = flowing;

@@ -3,7 +3,6 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
-#include <vtkIdList.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 
@@ -53,7 +52,15 @@ void take_scalars(vtkDataSetAttributes& from, vtkIdList& ids, vtkDataSetAttribut
 
 }  // namespace
 
-vtkSmartPointer<vtkPolyData> coarse_skin(vtkPolyData& skin, int triangles) {
+vtkSmartPointer<vtkPolyData> with_scalars(const CoarseSkin& coarse, vtkPolyData& skin) {
+  auto surface = vtkSmartPointer<vtkPolyData>::New();
+  surface->ShallowCopy(coarse.surface);
+  take_scalars(*skin.GetCellData(), *coarse.cells, *surface->GetCellData());
+  take_scalars(*skin.GetPointData(), *coarse.points, *surface->GetPointData());
+  return surface;
+}
+
+CoarseSkin coarse_skin(vtkPolyData& skin, int triangles) {
   const vtkIdType points = skin.GetNumberOfPoints(), cells = skin.GetNumberOfCells();
   std::vector<Vec<3>> at(static_cast<std::size_t>(points));
   for (vtkIdType p = 0; p < points; ++p) skin.GetPoint(p, at[static_cast<std::size_t>(p)].data());
@@ -72,7 +79,8 @@ vtkSmartPointer<vtkPolyData> coarse_skin(vtkPolyData& skin, int triangles) {
   }
   // A square of the grid makes two triangles.
   const double size = std::sqrt(2 * area / triangles);
-  auto coarse = vtkSmartPointer<vtkPolyData>::New();
+  CoarseSkin coarse{vtkSmartPointer<vtkPolyData>::New(), vtkSmartPointer<vtkIdList>::New(),
+                    vtkSmartPointer<vtkIdList>::New()};
   if (!(size > 0)) return coarse;
 
   // Points by their cell of the grid, as numbers in the order in which cells are met.
@@ -104,7 +112,6 @@ vtkSmartPointer<vtkPolyData> coarse_skin(vtkPolyData& skin, int triangles) {
   }
 
   vtkNew<vtkCellArray> polys;
-  vtkNew<vtkIdList> kept, first;
   for (std::size_t c = 0; c < corners.size(); ++c) {
     std::array<vtkIdType, 3> to;
     std::array<Vec<3>, 3> p;
@@ -122,18 +129,16 @@ vtkSmartPointer<vtkPolyData> coarse_skin(vtkPolyData& skin, int triangles) {
       }
     if (to[0] == to[1] || to[1] == to[2] || to[2] == to[0]) continue;
     polys->InsertNextCell(3, to.data());
-    kept->InsertNextId(static_cast<vtkIdType>(c));
+    coarse.cells->InsertNextId(static_cast<vtkIdType>(c));
   }
   std::vector<Vec<3>> moved;
   moved.reserve(clusters.size());
   for (const Cluster& cluster : clusters) {
     moved.push_back(meeting_point(cluster, size));
-    first->InsertNextId(cluster.first);
+    coarse.points->InsertNextId(cluster.first);
   }
-  coarse->SetPoints(make_points(moved));
-  coarse->SetPolys(polys);
-  take_scalars(*skin.GetCellData(), *kept, *coarse->GetCellData());
-  take_scalars(*skin.GetPointData(), *first, *coarse->GetPointData());
+  coarse.surface->SetPoints(make_points(moved));
+  coarse.surface->SetPolys(polys);
   return coarse;
 }
 

@@ -58,6 +58,11 @@ CompareView::CompareView(Session& session, VtkView& main, QWidget* parent)
           [this](bool on) { scene_->set_moving(on, view_->fast_triangles()); });
   link(*view_, main_);
   link(main_, *view_);
+  const auto follow_activity = [this] {
+    view_->draw_in_steps(session_.activity() == Activity::running);
+  };
+  connect(&session, &Session::activity_changed, this, follow_activity);
+  follow_activity();
   connect(which_, &QComboBox::currentIndexChanged, this, &CompareView::follow_mesh);
   connect(&session, &Session::iterations_changed, this, &CompareView::follow_iterations);
   connect(&session, &Session::shown_changed, this, &CompareView::follow_mesh);
@@ -104,6 +109,7 @@ void CompareView::follow_mesh() {
   const Iteration& compared = k < 0 ? none : session_.iterations()[static_cast<std::size_t>(k)];
   if (compared.state == shown_) return;
   shown_ = compared.state;
+  if (session_.activity() == Activity::running) view_->arrive();
   scene_->set_mesh(shown_, compared.prepared);
   refresh();
 }

@@ -42,6 +42,8 @@ std::shared_ptr<const PreparedMesh> prepare_mesh(std::shared_ptr<const MeshState
   skin.choose(choice);
   made->skin = skin.skin(choice.planes);
   made->elements = skin.elements();
+  if (choice.fast > 0 && made->skin->GetNumberOfCells() > choice.fast)
+    made->coarse = coarse_skin(*made->skin, choice.fast / 2);
   if (choice.grid) made->grid = skin.grid();
   made->choice = choice;
   return made;
@@ -161,6 +163,13 @@ vtkSmartPointer<vtkPolyData> MeshSkin::skin(const std::vector<std::pair<Vec<3>, 
   add_numbers(*data->GetPointData(), node_array, node);
   add_fields(*state_, element, node, *data->GetCellData(), *data->GetPointData());
   return data;
+}
+
+const CoarseSkin* MeshSkin::coarse(vtkPolyData& of) const {
+  // Copies share their points.
+  const bool known =
+      prepared_ && prepared_->coarse && of.GetPoints() == prepared_->skin->GetPoints();
+  return known ? &*prepared_->coarse : nullptr;
 }
 
 vtkUnstructuredGrid* MeshSkin::grid() {

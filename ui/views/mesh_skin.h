@@ -12,6 +12,7 @@
 
 #include "core/study/run.h"
 #include "ui/session/mesh_faces.h"
+#include "ui/views/coarse_skin.h"
 
 namespace lamella::ui {
 
@@ -30,6 +31,7 @@ struct SkinChoice {
   /// Origin and normal of each: elements without a node where all are negative go.
   std::vector<std::pair<Vec<3>, Vec<3>>> planes;
   bool grid = false;  ///< the elements themselves are needed too, to be cut through
+  int fast = 0;       ///< triangles drawn while the camera moves; 0: not known yet
 
   bool operator==(const SkinChoice&) const = default;
 };
@@ -39,6 +41,7 @@ struct PreparedMesh {
   MeshFaces faces;
   SkinChoice choice;  ///< that the rest is of
   vtkSmartPointer<vtkPolyData> skin;
+  std::optional<CoarseSkin> coarse;  ///< of a skin that has more triangles than `fast`
   std::size_t elements = 0;
   vtkSmartPointer<vtkUnstructuredGrid> grid;  ///< null: not asked for
 };
@@ -59,6 +62,8 @@ class MeshSkin {
   vtkSmartPointer<vtkPolyData> skin(const std::vector<std::pair<Vec<3>, Vec<3>>>& planes);
   /// Elements of the last skin.
   std::size_t elements() const { return elements_; }
+  /// What `of`, one of the skins, looks like with fewer triangles; null: that is not prepared.
+  const CoarseSkin* coarse(vtkPolyData& of) const;
   /// The chosen elements as a grid to be cut through, made when first asked for.
   vtkUnstructuredGrid* grid();
 

@@ -119,6 +119,9 @@ void ModelView::connect_session() {
   connect(&session_, &Session::surfaces_changed, this, &ModelView::follow_surfaces);
   connect(&session_, &Session::selection_changed, this, &ModelView::follow_selection);
   connect(&session_, &Session::shown_changed, this, &ModelView::follow_mesh);
+  connect(&session_, &Session::activity_changed, this, [this] {
+    if (view_) view_->draw_in_steps(session_.activity() == Activity::running);
+  });
   connect(&session_, &Session::place_shown, this,
           [this](const Vec<3>& at, double radius, const QString& text) {
             if (!scene_) return;
@@ -128,7 +131,7 @@ void ModelView::connect_session() {
           });
   connect(&session_, &Session::cut_asked, this, [this](const Vec<3>& at) {
     if (!scene_) return;
-    Section cut = section().value_or(section_across(-1));
+    Section cut = section().value_or(section_across({true, true, true}));
     cut.origin = at;
     set_section(cut);
   });
@@ -462,7 +465,7 @@ void ModelView::follow_mesh() {
   if (!scene_) return;
   const bool had = scene_->bounds()[0] <= scene_->bounds()[1];
   picks_->forget();
-  if (session_.activity() == Activity::running) view_->hurry();  // well in a turn of its own
+  if (session_.activity() == Activity::running) view_->arrive();
   scene_->set_mesh(session_.shown_state(), session_.shown_prepared());
   walls_->want(of_walls(color_by()) && !session_.shown_state());
   if (!session_.has_bodies()) follow_study();
@@ -477,7 +480,9 @@ void ModelView::refresh() {
     legend.missing = walls_->status();
   overlay_->set_legend(legend);
   overlay_->set_scale_visible(!session_.empty());
-  session_.draw_as(scene_->skin_choice());
+  SkinChoice drawn = scene_->skin_choice();
+  drawn.fast = view_->fast_triangles();
+  session_.draw_as(std::move(drawn));
   view_->update();
   if (compare_) compare_->refresh();
 }
@@ -486,21 +491,10 @@ void ModelView::set_color_by(ColorBy color_by) { bar_->set_color_by(color_by); }
 
 ColorBy ModelView::color_by() const { return bar_->color_by(); }
 
-Section ModelView::section_across(int axis) const {
-  const auto b = scene_->bounds();
-  if (axis < 0) {
-    // Across the longest side: the section that shows most walls.
-    const Vec<3> size(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
-    size.maxCoeff(&axis);
-  }
-  Section section;
-  section.normal = Vec<3>::Unit(axis);
-  // The side towards the viewer goes, so that the cut is seen.
-  double direction[3];
-  view_->renderer()->GetActiveCamera()->GetDirectionOfProjection(direction);
-  if (direction[axis] > 0) section.normal = -section.normal;
-  section.origin = Vec<3>((b[0] + b[1]) / 2, (b[2] + b[3]) / 2, (b[4] + b[5]) / 2);
-  return section;
+Section ModelView::section_across(const std::array<bool, 3>& axes) const {
+  Vec<3> direction;
+  view_->renderer()->GetActiveCamera()->GetDirectionOfProjection(direction.data());
+  return first_section(scene_->bounds(), direction, axes);
 }
 
 void ModelView::start_section(int axis) {
@@ -513,19 +507,21 @@ void ModelView::start_section(int axis) {
     current_cut_ = std::clamp(current_cut_, 0, cuts - 1);
     edit_cut(session_, current_cut_, tr("Turn %1 on"), [](CutPlane& c) { c.on = true; });
   } else {
-    set_section(section_across(axis));
+    set_section(
+        section_across({axis < 0 || axis == 0, axis < 0 || axis == 1, axis < 0 || axis == 2}));
   }
 }
 
 void ModelView::add_section() {
   if (!scene_ || session_.empty()) return;
   // Across an axis that no cut is across yet.
-  int axis = -1;
-  for (int k = 0; k < 3 && axis < 0; ++k)
-    if (std::none_of(sections_.begin(), sections_.end(),
-                     [&](const Section& s) { return std::abs(s.normal[k]) > 0.9; }))
-      axis = k;
-  const Section section = section_across(axis);
+  std::array<bool, 3> axes{true, true, true};
+  for (std::size_t k = 0; k < 3; ++k)
+    axes[k] = std::none_of(sections_.begin(), sections_.end(), [&](const Section& s) {
+      return std::abs(s.normal[static_cast<Eigen::Index>(k)]) > 0.9;
+    });
+  const bool none = axes == std::array<bool, 3>{};
+  const Section section = section_across(none ? std::array{true, true, true} : axes);
   add_cut(session_, section.origin, section.normal);
 }
 

@@ -97,7 +97,7 @@ class ModelView : public QWidget {
   void apply_sections();
   void start_section(int axis);
   void add_section();
-  Section section_across(int axis) const;
+  Section section_across(const std::array<bool, 3>& axes) const;
   void slide_to(double position, int merge);
   std::optional<Picked> pick(const QPointF& at) const;
   void context_menu(const QPoint& at);

@@ -150,7 +150,7 @@ void Overlay::paint_legend(QPainter& painter) const {
     const auto align = k == 0 ? Qt::AlignLeft : k == ticks ? Qt::AlignRight : Qt::AlignHCenter;
     const double left = k == 0 ? x : k == ticks ? x - 60 : x - 30;
     painter.drawText(QRectF(left, bar.bottom() + 3, 60, 18), int(align) | int(Qt::AlignTop),
-                     QString::number(value, 'g', 3));
+                     written(value, 'g', 3));
   }
   if (legend_.missing.isEmpty()) return;
   const QRectF swatch(bar.left(), bar.bottom() + 25, 12, 12);

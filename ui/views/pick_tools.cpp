@@ -234,9 +234,9 @@ void PickTools::paint(QPainter& painter) const {
   if (at.size() == 3) {
     const Vec<3> a = measured_[0] - measured_[1];
     const Vec<3> b = measured_[2] - measured_[1];
-    paint_tag(painter, at[1],
-              QString("%1°").arg(std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi,
-                                 0, 'f', 1));
+    paint_tag(
+        painter, at[1],
+        written(std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi, 'f', 1) + "°");
   }
   if (!metric_text_.isEmpty()) paint_tag(painter, view_.project(metric_at_), metric_text_);
   if (place_) {

@@ -7,16 +7,17 @@
 #include <limits>
 
 #include "ui/theme.h"
+#include "ui/units.h"
 
 namespace lamella::ui {
 namespace {
 
 /// 12500 as "12.5 k", 8.25e6 as "8.25 M".
 QString short_number(double value) {
-  if (std::abs(value) >= 1e9) return QString::number(value, 'g', 3);
-  if (std::abs(value) >= 1e6) return QString("%1 M").arg(value / 1e6, 0, 'g', 3);
-  if (std::abs(value) >= 1e3) return QString("%1 k").arg(value / 1e3, 0, 'g', 3);
-  return QString::number(value, 'g', 4);
+  if (std::abs(value) >= 1e9) return written(value, 'g', 3);
+  if (std::abs(value) >= 1e6) return written(value / 1e6, 'g', 3) + " M";
+  if (std::abs(value) >= 1e3) return written(value / 1e3, 'g', 3) + " k";
+  return written(value);
 }
 
 double nice_step(double span, int steps) {
@@ -84,6 +85,12 @@ int Plot::count() const {
   std::size_t n = 0;
   for (const Series& s : series_) n = std::max(n, s.values.size());
   return static_cast<int>(n);
+}
+
+bool Plot::measured() const {
+  return std::any_of(series_.begin(), series_.end(), [](const Series& s) {
+    return std::any_of(s.values.begin(), s.values.end(), [](double v) { return std::isfinite(v); });
+  });
 }
 
 void Plot::update_range() {
@@ -238,7 +245,7 @@ void Plot::paintEvent(QPaintEvent*) {
       painter.fontMetrics().elidedText(title_, Qt::ElideRight, static_cast<int>(right - 12)));
   painter.setFont(small);
   const int n = count();
-  for (const double v : n > 0 ? ticks() : std::vector<double>{}) {
+  for (const double v : measured() ? ticks() : std::vector<double>{}) {
     const double y = y_of(v);
     painter.setPen(QPen(theme::border, 1));
     painter.drawLine(QPointF(a.left(), y), QPointF(a.right(), y));
@@ -246,9 +253,9 @@ void Plot::paintEvent(QPaintEvent*) {
     painter.drawText(QRectF(0, y - 9, a.left() - 7, 18), Qt::AlignRight | Qt::AlignVCenter,
                      short_number(v));
   }
-  if (n == 0) {
+  if (n == 0 || !measured()) {
     painter.setPen(theme::faint_text);
-    painter.drawText(a, Qt::AlignCenter, tr("Nothing yet"));
+    painter.drawText(a, Qt::AlignCenter, n == 0 ? tr("Nothing yet") : tr("not measured"));
     return;
   }
   const int stride = std::max(1, static_cast<int>(std::ceil(n * 26.0 / std::max(1.0, a.width()))));

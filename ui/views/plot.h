@@ -26,6 +26,8 @@ class Plot : public QWidget {
   void set_series(std::vector<Series> series);
   /// Of values of the longest series.
   int count() const;
+  /// Whether any of the values is a number.
+  bool measured() const;
   /// A dashed horizontal line called `name`, as the value asked for.
   void set_target(std::optional<double> value, const QString& name = {});
   /// Iteration marked by a vertical line; -1: none.

@@ -238,8 +238,12 @@ struct Scene::Impl {
                               ? mesh_mapper->GetInput()->GetNumberOfCells()
                               : 0;
     const bool fast = most_triangles > 0 && all > most_triangles;
-    if (fast && !coarse)
-      coarse = coarse_skin(*mesh_mapper->GetInput(), static_cast<int>(most_triangles / 2));
+    if (fast && !coarse) {
+      vtkPolyData& drawn = *mesh_mapper->GetInput();
+      const CoarseSkin* made = skins.coarse(drawn);
+      coarse = with_scalars(made ? *made : coarse_skin(drawn, static_cast<int>(most_triangles / 2)),
+                            drawn);
+    }
     if (fast) {
       // How it colors and what clips it; the shaders are each mapper's own.
       coarse_mapper->vtkMapper::ShallowCopy(mesh_mapper);

@@ -8,6 +8,7 @@
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkOpenGLState.h>
+#include <vtkPolyDataMapper.h>
 #include <vtkRenderer.h>
 
 #include <QApplication>
@@ -22,6 +23,7 @@
 
 #include "ui/theme.h"
 #include "ui/views/kept_memory.h"
+#include "ui/views/scene_actors.h"
 
 namespace lamella::ui {
 namespace {
@@ -43,14 +45,20 @@ void is_current(vtkObject*, unsigned long, void* client, void* call_data) {
 
 /// ms without a move after which the picture is drawn well.
 constexpr int rest_after = 180;
+/// ms in which what waits meanwhile has its turn.
+constexpr int between_steps = 20;
 /// Pixels that the processor draws several times a second.
 constexpr double fast_pixels = 350'000;
+
+/// How well a picture was drawn.
+enum class Drawn { fast, sharp, smooth };
 
 struct VtkView::Vtk {
   vtkNew<vtkGenericOpenGLRenderWindow> window;
   vtkNew<vtkRenderer> renderer;
+  vtkNew<vtkRenderer> smoother;  // draws nothing but makes the edges of what is there smooth
   vtkMTimeType drawn = 0;
-  bool drawn_well = false;
+  Drawn drawn_how = Drawn::fast;
   bool rehearsed = false;
   int width = 1, height = 1;  // of the widget, device pixels
 
@@ -105,12 +113,24 @@ VtkView::VtkView(QWidget* parent) : QOpenGLWidget(parent), vtk_(std::make_unique
   vtk_->window->SetFrameBlitModeToNoBlit();
   vtk_->window->SetMultiSamples(0);
   vtk_->window->AddRenderer(vtk_->renderer);
+  vtk_->window->SetNumberOfLayers(2);
+  vtk_->smoother->SetLayer(1);
+  vtk_->smoother->InteractiveOff();
+  vtk_->smoother->DrawOff();
+  vtk_->smoother->UseFXAAOn();
+  // Without anything in it it would do nothing at all.
+  vtkNew<vtkPolyDataMapper> nothing;
+  nothing->SetInputData(speck(Vec<3>::Zero()));
+  vtkNew<vtkActor> in_it;
+  in_it->SetMapper(nothing);
+  vtk_->smoother->AddActor(in_it);
+  vtk_->window->AddRenderer(vtk_->smoother);
   vtk_->renderer->SetGradientBackground(true);
   refresh_theme();
   vtk_->renderer->GetActiveCamera()->ParallelProjectionOn();
   rest_.setSingleShot(true);
   rest_.setInterval(rest_after);
-  connect(&rest_, &QTimer::timeout, this, &VtkView::settle);
+  connect(&rest_, &QTimer::timeout, this, &VtkView::rest);
   vtkNew<vtkCallbackCommand> make;
   make->SetCallback(make_current);
   make->SetClientData(&context_);
@@ -192,20 +212,21 @@ void VtkView::resizeGL(int width, int height) {
 void VtkView::paintGL() {
   if (drawing_ || !context_) return;
   // What lies over the picture is painted more often than it changes.
-  const bool well = !hurried_;
-  if (vtk_->drawn == vtk_->changed() && (vtk_->drawn_well || !well)) return Q_EMIT rendered();
+  const bool well = !hurried_, same = vtk_->drawn == vtk_->changed();
+  if (same && (!well || vtk_->drawn_how == Drawn::smooth)) return Q_EMIT rendered();
   drawing_ = true;
+  const bool only_smooth = software_ && well && same && vtk_->drawn_how == Drawn::sharp;
   // Smooth edges take as long as all the rest where the processor draws.
-  vtk_->renderer->SetUseFXAA(software_ && well);
+  const bool sharp = software_ && well && in_steps_ && !only_smooth;
+  vtk_->renderer->SetUseFXAA(software_ && well && !sharp);
   if (software_)
     vtk_->set_share(
         well ? 1 : std::min(1.0, std::sqrt(fast_pixels / (double(vtk_->width) * vtk_->height))));
-  vtkOpenGLState* state = vtk_->window->GetState();
-  state->Reset();
-  state->Push();
-  state->vtkglDepthFunc(GL_LEQUAL);
-  vtk_->window->Render();
-  state->Pop();
+  vtk_->renderer->SetDraw(!only_smooth);
+  vtk_->smoother->SetDraw(only_smooth);
+  render();
+  vtk_->renderer->DrawOn();
+  vtk_->smoother->DrawOff();
 
   QOpenGLExtraFunctions* gl = context_->extraFunctions();
   gl->glBindFramebuffer(GL_DRAW_FRAMEBUFFER, defaultFramebufferObject());
@@ -229,8 +250,9 @@ void VtkView::paintGL() {
   gl->glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   drawing_ = false;
   vtk_->drawn = vtk_->changed();
-  vtk_->drawn_well = well || !software_;
+  vtk_->drawn_how = sharp ? Drawn::sharp : well || !software_ ? Drawn::smooth : Drawn::fast;
   if (hurried_) rest_.start();  // counted from when the picture is there
+  if (sharp) QTimer::singleShot(between_steps, this, [this] { update(); });
   Q_EMIT rendered();
 }
 
@@ -239,8 +261,48 @@ void VtkView::hurry() {
   rest_.start();
 }
 
+void VtkView::render() {
+  vtkOpenGLState* state = vtk_->window->GetState();
+  state->Reset();
+  state->Push();
+  state->vtkglDepthFunc(GL_LEQUAL);
+  vtk_->window->Render();
+  state->Pop();
+}
+
+void VtkView::arrive() {
+  hurry();
+  arrived_ = true;
+  if (moving_) return;
+  moving_ = true;
+  Q_EMIT moving_changed(true);
+}
+
+void VtkView::rest() {
+  if (!arrived_ || !software_) return settle();
+  arrived_ = false;
+  upload();
+  QTimer::singleShot(between_steps, this, &VtkView::settle);
+}
+
+void VtkView::upload() {
+  if (drawing_ || !context_ || !moving_) return;
+  moving_ = false;
+  Q_EMIT moving_changed(false);
+  makeCurrent();
+  drawing_ = true;
+  vtk_->window->SetSize(1, 1);
+  render();
+  drawing_ = false;
+  vtk_->drawn = 0;
+  doneCurrent();
+}
+
+void VtkView::draw_in_steps(bool on) { in_steps_ = on; }
+
 void VtkView::settle() {
   if (!hurried_) return;
+  arrived_ = false;
   rest_.stop();
   hurried_ = false;
   vtk_->set_share(1);  // what asks for the size of the picture means all of it

@@ -56,8 +56,13 @@ class VtkView : public QOpenGLWidget {
   /// Draws what comes within the next moment fast rather than well, and once more at rest: for
   /// whatever follows the mouse.
   void hurry();
+  /// The same for a mesh that is about to come: the picture is then drawn as if the camera moved.
+  void arrive();
   /// Ends that at once.
   void settle();
+  /// Nothing is to hold the event loop: where the processor draws, a picture at rest comes in one
+  /// turn of the loop and its smooth edges in the next.
+  void draw_in_steps(bool on);
   /// Triangles that are drawn several times a second.
   int fast_triangles() const { return software_ ? 60'000 : 3'000'000; }
   /// The camera moves, or did so a moment ago.
@@ -86,6 +91,10 @@ class VtkView : public QOpenGLWidget {
 
  private:
   void release_gl();
+  void rest();
+  /// Takes what is to be drawn to where it is drawn from, which is half of the first picture.
+  void upload();
+  void render();
   void camera_moved();
   void zoom(double factor, const QPointF& at);
   void rotate(const QPointF& by);
@@ -102,6 +111,8 @@ class VtkView : public QOpenGLWidget {
   bool drawing_ = false;
   bool software_ = false;
   bool hurried_ = false;
+  bool arrived_ = false;
+  bool in_steps_ = false;
   bool moving_ = false;
   QTimer rest_;
   MouseFilter filter_;

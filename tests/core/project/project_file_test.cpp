@@ -397,6 +397,46 @@ TEST_F(ProjectFile, OnAFullDiskTheOldOneStays) {
   EXPECT_EQ(folder.names(), (Names{"parts", "s.lamella"}));
 }
 
+TEST_F(ProjectFile, TellsWhereFacesWereOnceTheCadHasChanged) {
+  // A flat part of two faces, which change their numbers.
+  Part part;
+  part.name = "a";
+  part.surface.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 0, 0}, {9, 1, 0}, {8, 0, 0}};
+  part.surface.facets = {{0, 1, 2}, {3, 4, 5}};
+  part.surface.facet_face = {0, 1};
+  part.surface.faces.resize(2);
+  ProjectContent saved = content();
+  saved.study.groups = {{"gate", GroupKind::gate, "a", {1}}};
+  saved.faces = known_faces(saved.study, {part});
+  ASSERT_EQ(saved.faces.size(), 1u);
+  ASSERT_TRUE(save_project(saved, file));
+
+  Project same = opened();
+  EXPECT_EQ(fit_to_parts(same.study, file, {part}), Names{});
+  EXPECT_EQ(same.study.groups[0].faces, std::vector<std::int32_t>{1});
+
+  write("parts/a.stl", "solid b");
+  std::swap(part.surface.facets[0], part.surface.facets[1]);
+  Project changed = opened();
+  EXPECT_EQ(fit_to_parts(changed.study, file, {part}).size(), 1u) << "it is told";
+  EXPECT_EQ(changed.study.groups[0].faces, std::vector<std::int32_t>{0});
+
+  // Projects of earlier versions do not tell: the numbers stay, and that is said.
+  saved.faces.clear();
+  saved.study.inputs[0].sha256 = std::string(64, '0');
+  ASSERT_TRUE(save_project(saved, file));
+  Project silent = opened();
+  EXPECT_EQ(fit_to_parts(silent.study, file, {part}).size(), 1u);
+  EXPECT_EQ(silent.study.groups[0].faces, std::vector<std::int32_t>{1});
+}
+
+TEST(KnownFaces, AreNotReadFromAnythingElse) {
+  for (const char* json :
+       {"", "{}", "[1]", R"([{"part":"a"}])", R"([{"part":"a","diagonal":1,"faces":[[1,2]]}])",
+        R"([{"part":"a","diagonal":1,"faces":[[1,2,3,4,5,6,"7"]]}])"})
+    EXPECT_FALSE(known_faces_from(json)) << json;
+}
+
 TEST(Unmatched, NamesWhatThePartsDoNotHave) {
   Part part;
   part.name = "lid";

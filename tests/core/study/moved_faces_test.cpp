@@ -67,7 +67,8 @@ TEST(MovedFaces, AskForThePlaceNotForTheNumber) {
       ASSERT_GE(now, 0);
       ASSERT_NE(number, now);
       Study study = asking_for(number);
-      EXPECT_EQ(move_faces(study, {before}, {after}), std::vector<std::string>{});
+      EXPECT_EQ(move_faces(study, known_faces(study, {before}), {after}),
+                std::vector<std::string>{});
       EXPECT_EQ(study.groups[0].faces, std::vector<std::int32_t>{now}) << axis;
       EXPECT_EQ(ids_of(study), std::vector<std::int32_t>{now}) << axis;
     }
@@ -78,7 +79,7 @@ TEST(MovedFaces, AFaceThatIsGoneIsTold) {
   // Of the side of 30 x 2 a hundredth is left, elsewhere.
   const Part after = box({0, 0, 0}, {3, 0.6, 0.5});
   Study study = asking_for(face_on(before, 0, 40));
-  const auto notes = move_faces(study, {before}, {after});
+  const auto notes = move_faces(study, known_faces(study, {before}), {after});
   ASSERT_EQ(notes.size(), 2u);
   EXPECT_NE(notes[0].find("gate"), std::string::npos);
   EXPECT_TRUE(study.groups[0].faces.empty());
@@ -89,7 +90,7 @@ TEST(MovedFaces, OtherBodiesKeepTheirs) {
   Part other = box({0, 0, 0}, {1, 1, 1});
   other.name = "other";
   Study study = asking_for(2);
-  EXPECT_TRUE(move_faces(study, {other}, {other}).empty());
+  EXPECT_TRUE(move_faces(study, known_faces(study, {other}), {other}).empty());
   EXPECT_EQ(study.groups[0].faces, std::vector<std::int32_t>{2});
 }
 

@@ -45,7 +45,7 @@ TEST(CoarseSkin, HasFewTrianglesOnTheSameSurfaceWithItsColors) {
   vtkPolyData& fine = *prepared->skin;
   ASSERT_EQ(fine.GetNumberOfCells(), 4 * (24 * 16 + 24 * 8 + 16 * 8));
   fine.GetCellData()->SetActiveScalars("quality");
-  const auto coarse = coarse_skin(fine, 600);
+  const auto coarse = with_scalars(coarse_skin(fine, 600), fine);
   EXPECT_LT(coarse->GetNumberOfCells(), 900);
   EXPECT_GT(coarse->GetNumberOfCells(), 200);
   auto* colors = vtkFloatArray::SafeDownCast(coarse->GetCellData()->GetScalars());
@@ -77,7 +77,7 @@ TEST(CoarseSkin, HasFewTrianglesOnTheSameSurfaceWithItsColors) {
 
 TEST(CoarseSkin, OfNothingIsNothing) {
   vtkNew<vtkPolyData> nothing;
-  EXPECT_EQ(coarse_skin(*nothing, 100)->GetNumberOfCells(), 0);
+  EXPECT_EQ(coarse_skin(*nothing, 100).surface->GetNumberOfCells(), 0);
 }
 
 vtkIdType drawn_triangles(vtkRenderer& renderer) {
@@ -134,6 +134,37 @@ TEST(CoarseSkin, IsWhatASceneShowsWhileItMoves) {
   EXPECT_GT(looks_apart(coarse, with_edges), 0.001);
   scene.set_moving(true, 100000);
   EXPECT_EQ(drawn_triangles(*view.renderer()), all) << "few enough to be drawn as they are";
+}
+
+TEST(CoarseSkin, IsWhatAMeshThatArrivesIsFirstDrawnAs) {
+  VtkView view;
+  Scene scene(*view.renderer());
+  QObject::connect(&view, &VtkView::moving_changed, [&](bool on) { scene.set_moving(on, 1500); });
+  view.resize(480, 300);
+  view.show();
+  ASSERT_TRUE(QTest::qWaitForWindowExposed(&view, patience));
+  const auto state = block();
+  SkinChoice choice;
+  choice.fast = 1500;
+  const auto prepared = prepare_mesh(state, choice);
+  ASSERT_TRUE(prepared->coarse);
+  scene.set_mesh(state, prepared);
+  view.look(Vec<3>(-1, 1, -1).normalized(), Vec<3>::UnitZ(), scene.bounds());
+  const vtkIdType all = drawn_triangles(*view.renderer());
+  const QImage at_once = view.grab().toImage();
+  ASSERT_EQ(all, 4 * (24 * 16 + 24 * 8 + 16 * 8));
+
+  scene.set_mesh(nullptr, nullptr);
+  view.draw_in_steps(true);
+  view.arrive();
+  scene.set_mesh(state, prepared);
+  EXPECT_EQ(drawn_triangles(*view.renderer()), prepared->coarse->surface->GetNumberOfPolys())
+      << "the one that was prepared";
+  view.update();
+  // At rest comes all of it, and smooth edges in a turn of their own: what one turn draws.
+  ASSERT_TRUE(QTest::qWaitFor([&] { return drawn_triangles(*view.renderer()) == all; }, patience));
+  QTest::qWait(500);
+  EXPECT_EQ(view.grab().toImage(), at_once);
 }
 
 }  // namespace
