@@ -79,6 +79,19 @@ std::optional<Curved> chords_of(const Zone<3>& zone, const Vec<3>& foot, const V
   return out;
 }
 
+/// Whether more than half of what is around the middle of an edge is inside of the zone.
+bool reentrant(const Zone<3>& zone, const Vec<3>& p, const Vec<3>& q, double tolerance) {
+  constexpr int around = 16;
+  const Vec<3> u = (q - p).unitOrthogonal(), v = (q - p).normalized().cross(u);
+  int inside = 0;
+  for (int k = 0; k < around; ++k) {
+    const double angle = 2 * std::numbers::pi * (k + 0.5) / around;
+    const Vec<3> x = 0.5 * (p + q) + tolerance * (std::cos(angle) * u + std::sin(angle) * v);
+    inside += zone.distance(x) < 0;
+  }
+  return inside > around / 2 + 1;
+}
+
 }  // namespace
 
 Metric<3> Curved::at(const Metric<3>& metric, double distance, double growth) const {
@@ -104,8 +117,9 @@ void ChordField::Level::add(const std::array<Vec<3>, 3>& facet, const Curved& as
 }
 
 void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
-                             double tolerance, double largest, int threads,
+                             const Zone<3>& zone, const ChordParams& params, double largest,
                              const Progress& progress, Levels& levels) {
+  const double tolerance = params.tolerance;
   // Pieces of the chains, as slim facets that a locator can hold.
   struct Piece {
     std::array<Vec<3>, 3> facet;
@@ -145,8 +159,14 @@ void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition
         if ((p - q).norm() <= tolerance) return true;
     return false;
   };
+  std::vector<char> hollow(pieces.size(), 0);
+  if (params.between_reentrant < 1 &&
+      !parallel_each(pieces.size(), params.threads, progress.portion(0, 0.4), [&](std::size_t i) {
+        hollow[i] = reentrant(zone, pieces[i].facet[0], pieces[i].facet[1], tolerance);
+      }))
+    return;
   std::vector<std::optional<Curved>> found(pieces.size());
-  parallel_each(pieces.size(), threads, progress, [&](std::size_t i) {
+  parallel_each(pieces.size(), params.threads, progress.portion(0.4, 1), [&](std::size_t i) {
     const auto& [facet, chain] = pieces[i];
     const Vec<3> middle = 0.5 * (facet[0] + facet[1]);
     if (partition.border(middle).distance > 0.1 * tolerance) return;  // hidden
@@ -160,10 +180,12 @@ void ChordField::add_details(const ReferenceSurface<3>& surface, const Partition
       if (meet(chain, pieces[static_cast<std::size_t>(n.facet)].chain)) continue;
       Vec<3> across = n.point - middle;
       across -= across.dot(asked.direction[0]) * asked.direction[0];
-      const double width = across.norm();
-      if (!(width > tolerance) || width >= asked.size[1]) continue;
+      double width = across.norm();
+      if (!(width > tolerance)) continue;
+      if (hollow[i] && hollow[static_cast<std::size_t>(n.facet)]) width *= params.between_reentrant;
+      if (width >= asked.size[1]) continue;
       asked.size[1] = width;
-      asked.direction[1] = across / width;
+      asked.direction[1] = across.normalized();
     }
     asked.normal = asked.direction[0].cross(asked.direction[1]);
     if (asked.size[1] < asked.size[0]) {
@@ -209,7 +231,7 @@ ChordField::ChordField(const Partition<3>& partition,
           {s.points[s.facets[f][0]], s.points[s.facets[f][1]], s.points[s.facets[f][2]]},
           *found[f]);
     }
-    add_details(s, partition, tolerance, detail_share * largest, params.threads,
+    add_details(s, partition, partition.zone(static_cast<int>(z)), params, detail_share * largest,
                 own.portion(0.5, 1), levels);
   }
   for (auto& [power, level] : levels) {

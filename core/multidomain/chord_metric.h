@@ -16,7 +16,9 @@ struct ChordParams {
   double tolerance = 0;  ///< mm
   double growth = 0.5;   ///< of sizes along the border, a share of the distance from it
   double smallest = 0;   ///< mm, no size along the border is below
-  int threads = 0;       ///< 0: all cores
+  int threads = 0;  ///< 0: all cores
+  /// Of the distance between two re-entrant edges: the largest size from one to the other.
+  double between_reentrant = 1;
 };
 
 /// A metric with sizes along all that is curved in the surfaces of the zones small enough for edges
@@ -24,9 +26,10 @@ struct ChordParams {
 /// small around it too. Away from the border they grow; the size across is small enough for them to
 /// grow to no more than 2.5 times within it. Sharp edges do not count as curved, but details do,
 /// whose edges the mesh has to follow: along a feature edge from corner to corner sizes are at most
-/// its length, and between edges that have no corner in common at most their distance. Zones
-/// without a surface ask for nothing. Immutable and thread-safe. Of one that was cancelled while it
-/// was made parts are missing.
+/// its length, and between edges that have no corner in common at most their distance, or a share
+/// of it where both are re-entrant: what is between may be a throat. Zones without a surface ask
+/// for nothing. Immutable and thread-safe. Of one that was cancelled while it was made parts are
+/// missing.
 class ChordField {
  public:
   ChordField(const Partition<3>& partition, const std::vector<ReferenceSurface<3>>& surfaces,
@@ -57,8 +60,8 @@ class ChordField {
   /// By the power of two of the smallest size.
   using Levels = std::map<int, Level>;
   static void add_details(const ReferenceSurface<3>& surface, const Partition<3>& partition,
-                          double tolerance, double largest, int threads, const Progress& progress,
-                          Levels& levels);
+                          const Zone<3>& zone, const ChordParams& params, double largest,
+                          const Progress& progress, Levels& levels);
 
   std::vector<Level> levels_;
   double growth_;

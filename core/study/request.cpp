@@ -11,6 +11,8 @@ namespace lamella {
 namespace {
 
 constexpr double kChordGrowth = 1;  // walls are fine across anyway
+/// Nodes in a throat, not at its ends alone, give it its layers.
+constexpr double kBetweenReentrant = 0.5;
 
 Result<void> check_method_of_field(const Study& study, const std::vector<std::string>& names) {
   const StudyFlow& f = *study.flow;
@@ -172,6 +174,7 @@ std::unique_ptr<const ChordField> chords_of(const Study& study, const Part& part
   ChordParams params;
   params.tolerance = chord_tolerance_of(study, part);
   params.growth = kChordGrowth;
+  params.between_reentrant = kBetweenReentrant;
   params.smallest = natural_params(study, part).h_min;
   params.threads = study.options.threads;
   return std::make_unique<const ChordField>(ChordField::of_body(part.surface, params, progress));

@@ -60,13 +60,20 @@ TEST(ChordField, SizesGrowWithTheDistanceFromWhatIsCurved) {
   }
 }
 
-TEST(ChordField, SizesAreNoLargerThanDetails) {
-  // A groove, 0.02 wide and 0.03 deep, across the top of a block.
-  const double wide = 0.02, deep = 0.03, growth = 0.5;
+constexpr double wide = 0.02, deep = 0.03;
+
+/// A block with a groove across its top.
+ReferenceSurface<3> grooved() {
   ReferenceSurface<3> s =
       testing::cell_surface({{{0, 0.5, 0.5 + wide, 1}, {0, 2}, {0, 1 - deep, 1}}},
                             [](int i, int, int k) { return i != 1 || k == 0; });
   find_features(s, 0.6);
+  return s;
+}
+
+TEST(ChordField, SizesAreNoLargerThanDetails) {
+  const double growth = 0.5;
+  const ReferenceSurface<3> s = grooved();
   const Partition<3> partition({{"block", surface_zone<3>(s)}});
   const ChordField field(partition, {s}, {tolerance, growth});
   const Metric<3> given = isotropic_metric<3>(large);
@@ -81,6 +88,20 @@ TEST(ChordField, SizesAreNoLargerThanDetails) {
   }
   EXPECT_LE(size({0.5, 0, 1 - deep / 2}, 2), 1.01 * deep);  // its edge at the end of the block
   EXPECT_LT((field.at(given, {0.5, 1, 0}) - given).norm(), 1e-9 * given.norm());
+}
+
+TEST(ChordField, SizesBetweenReentrantEdgesAreAShareOfTheirDistance) {
+  ChordParams params{tolerance};
+  params.between_reentrant = 0.5;
+  const ChordField field = ChordField::of_body(grooved(), params);
+  const Metric<3> given = isotropic_metric<3>(large);
+  const auto size = [&](const Vec<3>& x) {
+    return 1 / metric_length<3>(Vec<3>::UnitX(), field.at(given, x));
+  };
+  for (const double y : {0.3, 1.0, 1.7}) {
+    EXPECT_NEAR(size({0.5, y, 1 - deep}), 0.5 * wide, 0.01 * wide) << "the bottom of the groove";
+    EXPECT_NEAR(size({0.5, y, 1}), wide, 0.01 * wide) << "its upper edges";
+  }
 }
 
 TEST(ChordField, FlatSidesAndTheirEdgesAskForNothing) {
