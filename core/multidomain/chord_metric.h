@@ -16,7 +16,7 @@ struct ChordParams {
   double tolerance = 0;  ///< mm
   double growth = 0.5;   ///< of sizes along the border, a share of the distance from it
   double smallest = 0;   ///< mm, no size along the border is below
-  int threads = 0;  ///< 0: all cores
+  int threads = 0;       ///< 0: all cores
   /// Of the distance between two re-entrant edges: the largest size from one to the other.
   double between_reentrant = 1;
 };
