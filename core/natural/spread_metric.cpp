@@ -22,12 +22,10 @@ struct Sample {
 
   static Sample of(const Vec<3>& at, const Metric<3>& metric) {
     const Spectrum<3> s = spectrum<3>(metric);
-    std::array<int, 3> order{0, 1, 2};
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return s.values[a] > s.values[b]; });
     Sample out{at, {}, {}};
     for (int k = 0; k < 3; ++k) {
-      out.size[k] = 1 / std::sqrt(s.values[order[k]]);
-      out.axis.col(k) = s.vectors.col(order[k]);
+      out.size[k] = 1 / std::sqrt(s.values[2 - k]);
+      out.axis.col(k) = s.vectors.col(2 - k);
     }
     return out;
   }
@@ -99,12 +97,11 @@ struct SpreadMetric::Levels {
 SpreadMetric SpreadMetric::from(const std::vector<Vec<3>>& points, const MetricField<3>& metrics,
                                 const SpreadParams& params, const Progress& progress) {
   std::vector<Sample> samples(points.size());
-  const auto look = [&](std::size_t i) { samples[i] = Sample::of(points[i], metrics[i]); };
   SpreadMetric out;
   if (points.size() < 2) return out;
   if (!parallel_each(
           points.size() - 1, params.threads, progress.portion(0, 0.3),
-          [&](std::size_t i) { look(i + 1); }, 64))
+          [&](std::size_t i) { samples[i + 1] = Sample::of(points[i + 1], metrics[i + 1]); }, 64))
     return out;
   std::map<std::array<int, 2>, Level> by_size;
   for (std::size_t i = 1; i < samples.size(); ++i)
