@@ -108,10 +108,13 @@ QImage picture_of_section(ui::MainWindow& window) {
   return both;
 }
 
-/// What an action opens beside the window, even where it is waited for.
+/// What an action opens beside the window, even where it is waited for; nothing where it opens
+/// none.
 QImage picture_of_dialog(ui::MainWindow& window, ui::Act act) {
   QImage image;
+  bool looked = false;
   QTimer::singleShot(400, &window, [&] {
+    looked = true;
     for (QWidget* top : QApplication::topLevelWidgets()) {
       if (top == &window || !top->isVisible()) continue;
       image = top->grab().toImage();
@@ -119,7 +122,7 @@ QImage picture_of_dialog(ui::MainWindow& window, ui::Act act) {
     }
   });
   window.actions()[act]->trigger();
-  wait_until([&] { return !image.isNull(); });
+  wait_until([&] { return looked; });
   return image;
 }
 

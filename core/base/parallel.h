@@ -45,4 +45,12 @@ bool parallel_each(std::size_t count, int threads, const Progress& progress, Wor
   return !progress.cancelled();
 }
 
+/// Calls work(first, last) for ranges of at most `size` that together are [0, count); otherwise as
+/// `parallel_each`.
+template <class Work>
+void parallel_ranges(std::size_t count, std::size_t size, int threads, Work&& work) {
+  parallel_each((count + size - 1) / size, threads, {},
+                [&](std::size_t r) { work(r * size, std::min(count, (r + 1) * size)); }, 1);
+}
+
 }  // namespace lamella

@@ -1,7 +1,9 @@
 #include "core/io/facet_sides.h"
 
 #include <algorithm>
+#include <atomic>
 
+#include "core/base/parallel.h"
 #include "core/mesh/boundary.h"
 
 namespace lamella {
@@ -73,9 +75,14 @@ std::vector<FacetSide> facet_sides(const SimplexMesh<3>& mesh) {
 
 bool boundary_is_listed(const SimplexMesh<3>& mesh) {
   // Faces within the mesh cancel out: the sum over all elements is the sum over the boundary.
-  std::uint64_t sum = 0;
-  for (const auto& element : mesh.elements)
-    for (int k = 0; k < 4; ++k) sum += mark(opposite_facet<3>(element, k));
+  std::atomic<std::uint64_t> all = 0;
+  parallel_ranges(mesh.elements.size(), 32768, 0, [&](std::size_t first, std::size_t last) {
+    std::uint64_t own = 0;
+    for (std::size_t e = first; e < last; ++e)
+      for (int k = 0; k < 4; ++k) own += mark(opposite_facet<3>(mesh.elements[e], k));
+    all += own;
+  });
+  std::uint64_t sum = all;
   const std::vector<FacetSide> sides = facet_sides(mesh);
   for (std::size_t f = 0; f < sides.size(); ++f)
     if (sides[f].element >= 0 && sides[f].other < 0)

@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 
@@ -127,15 +128,15 @@ Result<CheckReport> check(const SimplexMesh<D>& mesh, const MetricField<D>& metr
     report.unit_edges = static_cast<double>(unit) / static_cast<double>(lengths.size());
   report.flat = static_cast<std::size_t>(std::count(samples.flat.begin(), samples.flat.end(), 1));
   report.allocation = allocation_factor(mesh, metric);
-  report.edge_length = stats_of(std::move(lengths));
-  report.mean_ratio = stats_of(std::move(samples.mean_ratio));
-  report.mean_ratio_mean = stats_of(std::move(samples.mean_ratio_mean));
-  report.shape = stats_of(std::move(samples.shape));
-  report.quality = stats_of(std::move(samples.quality));
-  if (progress.cancelled()) return cancelled_error();
-  report.conformity = stats_of(solid(samples.frobenius, samples.flat));
-  report.conformity_invariant = stats_of(solid(samples.invariant, samples.flat));
-  report.aspect_ratio = stats_of(solid(samples.aspect, samples.flat));
+  tbb::parallel_invoke(
+      [&] { report.edge_length = stats_of(std::move(lengths)); },
+      [&] { report.mean_ratio = stats_of(std::move(samples.mean_ratio)); },
+      [&] { report.mean_ratio_mean = stats_of(std::move(samples.mean_ratio_mean)); },
+      [&] { report.shape = stats_of(std::move(samples.shape)); },
+      [&] { report.quality = stats_of(std::move(samples.quality)); },
+      [&] { report.conformity = stats_of(solid(samples.frobenius, samples.flat)); },
+      [&] { report.conformity_invariant = stats_of(solid(samples.invariant, samples.flat)); },
+      [&] { report.aspect_ratio = stats_of(solid(samples.aspect, samples.flat)); });
   progress.report(1);
   return report;
 }

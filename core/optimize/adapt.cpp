@@ -77,7 +77,7 @@ std::vector<Stage> stages(const AdaptParams& params, bool coarse, bool function)
     // Sizes are as good as they get, so that shapes count for more.
     Stage places = average;
     places.sweep.moves_only = true;
-    places.sweep.size_weight = 0.9;
+    places.sweep.size_weight = 0.7;
     places.rounds = 20;
     places.settled = 0.05;
     all.push_back(places);
@@ -146,7 +146,8 @@ class Adaption {
     for (std::size_t e = 0; e < patch.size(); ++e)
       patch[e] = patch[e] ? 0 : 1 + static_cast<std::int32_t>(e / piece);
     const auto blocks = static_cast<int>(2 + (patch.size() - 1) / piece);
-    return run(BlockPartition<D>(work_, patch, blocks), sweep, sweeps, progress, 1);
+    return run(BlockPartition<D>(work_, patch, blocks, params_.threads), sweep, sweeps, progress,
+               1);
   }
 
   /// Of the elements, those that `mend` has found poor.
@@ -259,15 +260,11 @@ class Adaption {
     const auto& carried = own.empty() ? work_.metric : own;
     if (strict) kernel.metrics = &carried;
     std::vector<Rating> ratings(work_.elements.size());
-    constexpr std::size_t chunk = 4096;
-    parallel_each(
-        (ratings.size() + chunk - 1) / chunk, params_.threads, {},
-        [&](std::size_t c) {
-          const std::size_t first = c * chunk, last = std::min(ratings.size(), first + chunk);
+    parallel_ranges(
+        ratings.size(), 4096, params_.threads, [&](std::size_t first, std::size_t last) {
           FaceBatch<D>().rate_elements({work_.elements, work_.points, carried}, first, last, kernel,
                                        std::span(ratings).subspan(first, last - first));
-        },
-        1);
+        });
     // Ring by ring: an element joins when one of its nodes has.
     std::vector<std::int32_t> ring(work_.points.size(), 0), in(work_.elements.size(), 0);
     const auto mark = [&](std::size_t e, std::int32_t with) {

@@ -3,8 +3,10 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/base/parallel.h"
 
@@ -16,8 +18,12 @@ constexpr std::size_t block_elements = 24000;
 /// Rounds in a row that a node of an edge longer than this, in the metric, may be locked.
 constexpr int patience = 2;
 constexpr double very_long = 4;
+/// Elements, or nodes, that a thread takes at once.
+constexpr std::size_t range = 32768;
 /// Nodes that stay in one leaf when they are sorted in space.
 constexpr std::size_t leaf_nodes = 32;
+/// Block of a node that no element has named yet.
+constexpr std::int32_t unseen = -2;
 
 /// Halves nodes recursively across the direction in which most elements lie.
 template <int D>
@@ -98,21 +104,25 @@ std::vector<NodeId>& node_map(std::size_t size) {
 
 /// [node] whether it has waited at the end of a very long edge; empty when none has.
 template <int D>
-std::vector<char> stuck_nodes(const WorkMesh<D>& mesh) {
-  std::vector<char> stuck;
-  if (mesh.waits.empty()) return stuck;
+std::vector<char> stuck_nodes(const WorkMesh<D>& mesh, int threads) {
+  if (mesh.waits.empty()) return {};
+  std::vector<char> stuck(mesh.points.size(), 0);
+  std::atomic<bool> any = false;
   constexpr double limit = very_long * very_long * very_long * very_long;
-  for (const auto& nodes : mesh.elements)
-    for (NodeId a : nodes) {
-      if (a == 0 || mesh.waits[a] < patience) continue;
-      for (NodeId b : nodes) {
-        if (b == 0) continue;
-        const Vec<D> edge = mesh.points[b] - mesh.points[a];
-        if (!(mesh.metric[a].quad(edge) * mesh.metric[b].quad(edge) > limit)) continue;
-        if (stuck.empty()) stuck.resize(mesh.points.size(), 0);
-        stuck[a] = 1;
+  parallel_ranges(mesh.elements.size(), range, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t e = first; e < last; ++e)
+      for (NodeId a : mesh.elements[e]) {
+        if (a == 0 || mesh.waits[a] < patience) continue;
+        for (NodeId b : mesh.elements[e]) {
+          if (b == 0) continue;
+          const Vec<D> edge = mesh.points[b] - mesh.points[a];
+          if (!(mesh.metric[a].quad(edge) * mesh.metric[b].quad(edge) > limit)) continue;
+          std::atomic_ref(stuck[a]).store(1, std::memory_order_relaxed);
+          any = true;
+        }
       }
-    }
+  });
+  if (!any) stuck.clear();
   return stuck;
 }
 
@@ -136,41 +146,59 @@ BlockPartition<D>::BlockPartition(const WorkMesh<D>& mesh, int round, int thread
   }
   // An element belongs to the last of its nodes' blocks.
   std::vector<std::int32_t> home(mesh.elements.size(), 0);
-  for (std::size_t e = 0; e < home.size(); ++e)
-    for (NodeId n : mesh.elements[e])
-      if (n != 0) home[e] = std::max(home[e], node_block_[n]);
-  const std::vector<char> stuck = depth > 0 ? stuck_nodes(mesh) : std::vector<char>{};
-  if (!stuck.empty())
-    for (std::size_t e = 0; e < home.size(); ++e)
-      for (NodeId n : mesh.elements[e])
-        if (stuck[n]) home[e] = static_cast<std::int32_t>(count);
-  fill(mesh, home, static_cast<int>(count) + (stuck.empty() ? 0 : 1));
+  const std::vector<char> stuck = depth > 0 ? stuck_nodes(mesh, threads) : std::vector<char>{};
+  if (depth > 0)
+    parallel_ranges(home.size(), range, threads, [&](std::size_t first, std::size_t last) {
+      for (std::size_t e = first; e < last; ++e)
+        for (NodeId n : mesh.elements[e]) {
+          if (n != 0) home[e] = std::max(home[e], node_block_[n]);
+          if (!stuck.empty() && stuck[n]) home[e] = static_cast<std::int32_t>(count);
+        }
+    });
+  fill(mesh, home, static_cast<int>(count) + (stuck.empty() ? 0 : 1), threads);
 }
 
 template <int D>
 BlockPartition<D>::BlockPartition(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home,
-                                  int count) {
+                                  int count, int threads) {
   node_block_.resize(mesh.points.size());
-  fill(mesh, home, count);
+  fill(mesh, home, count, threads);
 }
 
 template <int D>
 void BlockPartition<D>::fill(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home,
-                             int count) {
+                             int count, int threads) {
+  // [range, block] elements, then where they begin in order_.
+  const std::size_t ranges = (home.size() + range - 1) / range;
+  std::vector<std::int32_t> next(ranges * count, 0);
+  parallel_ranges(home.size(), range, threads, [&](std::size_t first, std::size_t last) {
+    std::int32_t* own = next.data() + first / range * count;
+    for (std::size_t e = first; e < last; ++e) ++own[home[e]];
+  });
   first_.assign(count + 1, 0);
-  for (std::int32_t b : home) ++first_[b + 1];
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  std::int32_t total = 0;
+  for (int b = 0; b < count; ++b) {
+    for (std::size_t r = 0; r < ranges; ++r) total += std::exchange(next[r * count + b], total);
+    first_[b + 1] = total;
+  }
   order_.resize(home.size());
-  std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
-  for (std::size_t e = 0; e < home.size(); ++e)
-    order_[next[home[e]]++] = static_cast<std::int32_t>(e);
-
-  std::fill(node_block_.begin(), node_block_.end(), -2);
-  for (std::size_t e = 0; e < home.size(); ++e)
-    for (NodeId n : mesh.elements[e]) {
-      if (node_block_[n] == -2) node_block_[n] = home[e];
-      if (node_block_[n] != home[e]) node_block_[n] = -1;
+  std::fill(node_block_.begin(), node_block_.end(), unseen);
+  parallel_ranges(home.size(), range, threads, [&](std::size_t first, std::size_t last) {
+    std::int32_t* own = next.data() + first / range * count;
+    for (std::size_t e = first; e < last; ++e) {
+      const std::int32_t block = home[e];
+      order_[own[block]++] = static_cast<std::int32_t>(e);
+      for (NodeId n : mesh.elements[e]) {
+        if (n == 0) continue;
+        const std::atomic_ref seen(node_block_[n]);
+        std::int32_t in = seen.load(std::memory_order_relaxed);
+        if (in == block || in == -1) continue;
+        if (in == unseen && seen.compare_exchange_strong(in, block, std::memory_order_relaxed))
+          continue;
+        if (in != block) seen.store(-1, std::memory_order_relaxed);
+      }
     }
+  });
   pending_.assign(count, 0);
   for (std::size_t n = 1; n < mesh.points.size(); ++n)
     if (mesh.dirty[n] && node_block_[n] >= 0) pending_[node_block_[n]] = 1;

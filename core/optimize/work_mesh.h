@@ -43,14 +43,15 @@ class BlockPartition {
  public:
   BlockPartition(const WorkMesh<D>& mesh, int round, int threads);
   /// By hand: [element] its block, of `count` blocks.
-  BlockPartition(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count);
+  BlockPartition(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count,
+                 int threads);
   int count() const { return static_cast<int>(first_.size()) - 1; }
   /// Whether the block has dirty nodes.
   bool pending(int block) const { return pending_[block] != 0; }
   Block<D> extract(const WorkMesh<D>& mesh, int block) const;
 
  private:
-  void fill(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count);
+  void fill(const WorkMesh<D>& mesh, const std::vector<std::int32_t>& home, int count, int threads);
 
   std::vector<std::int32_t> order_;       // elements, by block
   std::vector<std::int32_t> first_;       // [block] into order_

@@ -164,7 +164,6 @@ void ConvergencePanel::follow_iterations() {
     error.values.push_back(fuzzy ? r.interface_error : std::nan(""));
   }
   const bool domain = session_.study().domain.has_value();
-  nodes_->set_title(domain && !nodes.values.empty() ? QString() : tr("Nodes"));
   nodes_->set_series(domain ? std::vector{nodes, mixed} : std::vector{nodes});
   conformity_->set_series({conformity});
   quality_->set_series({quality});

@@ -17,13 +17,13 @@ namespace lamella::ui {
 Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   setObjectName("welcome");
   auto* outer = new QVBoxLayout(this);
-  outer->setContentsMargins(16, 12, 16, 12);
+  outer->setContentsMargins(8, 12, 8, 12);
   outer->addStretch(2);
 
   drop_zone_ = new QFrame;
   drop_zone_->setObjectName("drop_zone");
-  drop_zone_->setFixedWidth(590);
-  drop_zone_->setMinimumHeight(200);
+  drop_zone_->setFixedWidth(546);
+  drop_zone_->setMinimumHeight(190);
   auto* zone = new QVBoxLayout(drop_zone_);
   zone->setSpacing(8);
   zone->addStretch(1);
@@ -57,7 +57,7 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
   outer->addWidget(or_label);
   outer->addSpacing(10);
   auto* samples = new QHBoxLayout;
-  samples->setSpacing(10);
+  samples->setSpacing(4);
   samples->addStretch(1);
   const std::tuple<const char*, QString, QString> parts[] = {
       {"ribbed_tray", tr("Ribbed tray"), tr("Ribs, bosses and fillets")},
@@ -71,9 +71,9 @@ Welcome::Welcome(Actions& actions, QWidget* parent) : QFrame(parent) {
     card->setText(label);
     card->setToolTip(tip);
     card->setIcon(QIcon(QString(":/icons/sample-%1.svg").arg(name)));
-    card->setIconSize(QSize(96, 64));
+    card->setIconSize(QSize(84, 56));
     card->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
-    card->setFixedSize(110, 108);
+    card->setFixedSize(106, 98);
     card->setCursor(Qt::PointingHandCursor);
     connect(card, &QToolButton::clicked, this,
             [this, name = QString(name)] { Q_EMIT sample_chosen(name); });

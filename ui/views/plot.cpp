@@ -227,14 +227,20 @@ void Plot::paintEvent(QPaintEvent*) {
   double right = a.right();
   const double lower = legend_below() ? 20 : 0;
   if (series_.size() > 1 && count() > 0) {
+    double names = 0;
+    for (const Series& s : series_) names += painter.fontMetrics().horizontalAdvance(s.name);
+    // Beside each name its line, a space before and behind; all of it less where there is no room.
+    const double room = (a.right() - names) / static_cast<double>(series_.size());
+    const double stroke = std::clamp(0.5 * room, 5.0, 12.0), gap = 0.5 * stroke;
     for (auto s = series_.rbegin(); s != series_.rend(); ++s) {
       const double w = painter.fontMetrics().horizontalAdvance(s->name);
       painter.setPen(theme::soft_text);
       painter.drawText(QRectF(right - w, 4 + lower, w + 2, 20), Qt::AlignLeft | Qt::AlignVCenter,
                        s->name);
       painter.setPen(QPen(s->color, 2.5, Qt::SolidLine, Qt::RoundCap));
-      painter.drawLine(QPointF(right - w - 18, 14 + lower), QPointF(right - w - 6, 14 + lower));
-      right -= w + 30;
+      const double end = right - w - gap;
+      painter.drawLine(QPointF(end - stroke, 14 + lower), QPointF(end, 14 + lower));
+      right = end - stroke - 2 * gap;
     }
   }
   if (lower > 0) right = a.right();
@@ -255,7 +261,8 @@ void Plot::paintEvent(QPaintEvent*) {
   }
   if (n == 0 || !measured()) {
     painter.setPen(theme::faint_text);
-    painter.drawText(a, Qt::AlignCenter, n == 0 ? tr("Nothing yet") : tr("not measured"));
+    painter.drawText(QRectF(0, a.top(), width(), a.height()), Qt::AlignCenter,
+                     n == 0 ? tr("Nothing yet") : tr("not measured"));
     return;
   }
   const int stride = std::max(1, static_cast<int>(std::ceil(n * 26.0 / std::max(1.0, a.width()))));
