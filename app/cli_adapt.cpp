@@ -8,6 +8,7 @@
 #include "app/cli_common.h"
 #include "app/cli_metric_field.h"
 #include "app/services.h"
+#include "core/base/freed_memory.h"
 #include "core/io/facet_sides.h"
 #include "core/mesh/interfaces.h"
 #include "core/mesh/quality.h"
@@ -350,6 +351,7 @@ int adapt_mesh(const SimplexMesh<D>& mesh, MetricField<D>&& given, const AdaptCo
       break;
     }
     current = std::move(*next);
+    give_back_freed_memory();
     ++adapted;
     cancelled = current.report.cancelled;
     // The field that was transported drifts; a function is known exactly at the new nodes.

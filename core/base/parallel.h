@@ -49,6 +49,10 @@ bool parallel_each(std::size_t count, int threads, const Progress& progress, Wor
 /// `parallel_each`.
 template <class Work>
 void parallel_ranges(std::size_t count, std::size_t size, int threads, Work&& work) {
+  if (count <= size) {
+    if (count > 0) work(std::size_t{0}, count);
+    return;
+  }
   parallel_each((count + size - 1) / size, threads, {},
                 [&](std::size_t r) { work(r * size, std::min(count, (r + 1) * size)); }, 1);
 }

@@ -61,7 +61,7 @@ bool same_sense(const Facet& a, const Facet& b) {
 void number_inner(const SimplexMesh<3>& mesh, Faces& out) {
   struct Inner {
     std::int32_t owner, neighbor;
-    std::int8_t local;
+    std::uint32_t local;
   };
   std::vector<Inner> inner;
   inner.reserve(2 * mesh.elements.size());
@@ -76,7 +76,7 @@ void number_inner(const SimplexMesh<3>& mesh, Faces& out) {
     return std::pair(a.owner, a.neighbor) < std::pair(b.owner, b.neighbor);
   });
   for (const Inner& face : inner) {
-    out.nodes.push_back(opposite_facet<3>(mesh.elements[face.owner], face.local));
+    out.nodes.push_back(opposite_facet<3>(mesh.elements[face.owner], static_cast<int>(face.local)));
     out.owner.push_back(face.owner);
     out.neighbor.push_back(face.neighbor);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <new>
 
 #include "core/base/parallel.h"
 
@@ -10,6 +11,7 @@ namespace {
 
 /// Elements, or nodes, that a thread takes at once.
 constexpr std::size_t range = 16384;
+constexpr std::size_t most_elements = std::size_t{1} << 27;
 
 /// What it was, before one of several threads added to it.
 std::size_t fetch_add(std::size_t& counter, std::size_t more) {
@@ -51,6 +53,8 @@ bool sort_parity(std::array<NodeId, N>& v) {
 template <int D>
 std::vector<FaceUse<D>> face_uses(const std::vector<std::array<NodeId, D + 1>>& elements,
                                   std::size_t node_slots) {
+  // More than the words of FaceUse hold take 20 GB: as if there was no memory for them.
+  if (elements.size() >= most_elements) throw std::bad_array_new_length();
   // One bucket per smallest node: linear in the number of faces, and the buckets stay small.
   std::vector<std::size_t> start(node_slots + 1, 0);
   each_element(elements, [&](const auto& e, std::size_t) {
@@ -69,7 +73,7 @@ std::vector<FaceUse<D>> face_uses(const std::vector<std::array<NodeId, D + 1>>& 
       u.nodes = opposite_facet<D>(e, k);
       u.odd = sort_parity(u.nodes);
       u.element = static_cast<std::int32_t>(i);
-      u.local = static_cast<std::int8_t>(k);
+      u.local = static_cast<std::uint32_t>(k) & 7;
       uses[fetch_add(next[u.nodes[0]], 1)] = u;
     }
   });
@@ -83,6 +87,7 @@ std::vector<FaceUse<D>> face_uses(const std::vector<std::array<NodeId, D + 1>>& 
     for (std::size_t n = first; n < last; ++n)
       std::sort(uses.begin() + start[n], uses.begin() + start[n + 1], before);
   });
+  static_assert(sizeof(FaceUse<D>) == sizeof(NodeId) * (D + 1));
   return uses;
 }
 

@@ -10,9 +10,10 @@ namespace lamella {
 template <int D>
 struct FaceUse {
   std::array<NodeId, D> nodes;  ///< ascending
-  std::int32_t element = 0;
-  std::int8_t local = 0;  ///< vertex of the element the face is opposite to
-  bool odd = false;       ///< sorting the outward listing took an odd permutation
+  // In one word: the faces of ten million elements are the largest list there is.
+  std::int32_t element : 28 = 0;
+  std::uint32_t local : 3 = 0;  ///< vertex of the element the face is opposite to
+  bool odd : 1 = false;         ///< sorting the outward listing took an odd permutation
 
   /// By number, not by a call for the bytes: this runs for every face of a mesh.
   bool same_face(const FaceUse& o) const {

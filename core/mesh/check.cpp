@@ -38,12 +38,31 @@ struct ElementSamples {
 };
 
 /// The entries of elements that are not flat.
-std::vector<double> solid(const std::vector<double>& values, const std::vector<char>& flat) {
-  std::vector<double> kept;
-  kept.reserve(values.size());
+std::vector<double> solid(std::vector<double> values, const std::vector<char>& flat) {
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (!flat[i]) kept.push_back(values[i]);
-  return kept;
+    if (!flat[i]) values[kept++] = values[i];
+  values.resize(kept);
+  return values;
+}
+
+/// Errors: cancelled.
+template <int D>
+Result<void> measure_edges(const SimplexMesh<D>& mesh, const MetricField<D>& metric,
+                           CheckReport& report, const Progress& progress) {
+  const auto edges = unique_edges<D>(mesh.elements, mesh.points.size());
+  std::vector<double> lengths(edges.size());
+  for_all(edges.size(), progress, [&](std::size_t i) {
+    const auto [a, b] = edges[i];
+    lengths[i] = edge_length<D>(mesh.points[b] - mesh.points[a], metric[a], metric[b]);
+  });
+  if (progress.cancelled()) return cancelled_error();
+  report.edges = edges.size();
+  const auto unit = std::count_if(lengths.begin(), lengths.end(), is_unit_length);
+  if (!lengths.empty())
+    report.unit_edges = static_cast<double>(unit) / static_cast<double>(lengths.size());
+  report.edge_length = stats_of(std::move(lengths));
+  return {};
 }
 
 }  // namespace
@@ -92,6 +111,10 @@ Result<CheckReport> check(const SimplexMesh<D>& mesh, const MetricField<D>& metr
   report.mesh = std::move(*topology);
   report.dimension = D;
 
+  // Before there are samples of the elements, which take as much memory.
+  if (Result<void> done = measure_edges(mesh, metric, report, progress); !done) return done.error();
+  progress.report(0.6);
+
   const std::size_t n = mesh.elements.size();
   ElementSamples samples(n);
   for_all(n, progress, [&](std::size_t i) {
@@ -111,32 +134,22 @@ Result<CheckReport> check(const SimplexMesh<D>& mesh, const MetricField<D>& metr
     samples.aspect[i] = aspect_ratio<D>(p);
   });
   if (progress.cancelled()) return cancelled_error();
-  progress.report(0.7);
+  progress.report(0.9);
 
-  const auto edges = unique_edges<D>(mesh.elements, mesh.points.size());
-  std::vector<double> lengths(edges.size());
-  for_all(edges.size(), progress, [&](std::size_t i) {
-    const auto [a, b] = edges[i];
-    lengths[i] = edge_length<D>(mesh.points[b] - mesh.points[a], metric[a], metric[b]);
-  });
-  if (progress.cancelled()) return cancelled_error();
-  progress.report(0.8);
-
-  report.edges = edges.size();
-  const auto unit = std::count_if(lengths.begin(), lengths.end(), is_unit_length);
-  if (!lengths.empty())
-    report.unit_edges = static_cast<double>(unit) / static_cast<double>(lengths.size());
   report.flat = static_cast<std::size_t>(std::count(samples.flat.begin(), samples.flat.end(), 1));
   report.allocation = allocation_factor(mesh, metric);
-  tbb::parallel_invoke(
-      [&] { report.edge_length = stats_of(std::move(lengths)); },
-      [&] { report.mean_ratio = stats_of(std::move(samples.mean_ratio)); },
-      [&] { report.mean_ratio_mean = stats_of(std::move(samples.mean_ratio_mean)); },
-      [&] { report.shape = stats_of(std::move(samples.shape)); },
-      [&] { report.quality = stats_of(std::move(samples.quality)); },
-      [&] { report.conformity = stats_of(solid(samples.frobenius, samples.flat)); },
-      [&] { report.conformity_invariant = stats_of(solid(samples.invariant, samples.flat)); },
-      [&] { report.aspect_ratio = stats_of(solid(samples.aspect, samples.flat)); });
+  const auto of = [&](Stats& stats, std::vector<double>& sample) {
+    return [&] { stats = stats_of(std::move(sample)); };
+  };
+  const auto of_solid = [&](Stats& stats, std::vector<double>& sample) {
+    return [&] { stats = stats_of(solid(std::move(sample), samples.flat)); };
+  };
+  tbb::parallel_invoke(of(report.mean_ratio, samples.mean_ratio),
+                       of(report.mean_ratio_mean, samples.mean_ratio_mean),
+                       of(report.shape, samples.shape), of(report.quality, samples.quality),
+                       of_solid(report.conformity, samples.frobenius),
+                       of_solid(report.conformity_invariant, samples.invariant),
+                       of_solid(report.aspect_ratio, samples.aspect));
   progress.report(1);
   return report;
 }

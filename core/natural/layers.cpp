@@ -60,7 +60,7 @@ struct Neighbors {
           [&](std::int32_t f, const std::array<NodeId, 3>& nodes) { return key(f) < nodes; });
       if (at == sorted.end() || key(*at) != a.nodes) return;
       across[a.element][a.local] = -1 - *at;
-      owner[*at] = {a.element, a.local};
+      owner[*at] = {a.element, static_cast<int>(a.local)};
     });
   }
 };

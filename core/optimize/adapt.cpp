@@ -185,6 +185,9 @@ class Adaption {
           progress.report(static_cast<double>(++finished) / static_cast<double>(blocks.size()));
         },
         1);
+    // The blocks have them all; a mesh of ten million elements is a gigabyte in two copies.
+    work_.elements = {};
+    work_.label = {};
     work_ = merge(work_, blocks, params_.threads);
     report_.sweeps += std::max(1, *std::max_element(swept.begin(), swept.end()));
     for (const AdaptReport& c : counts) {

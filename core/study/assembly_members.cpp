@@ -26,6 +26,7 @@ namespace {
 constexpr int kCells = 6;          // of the first mesh of a box, along its longest side
 constexpr double kOfLayer = 0.25;  // size across a fuzzy border, of the layer there
 constexpr double kMinGuardShare = 0.3;
+constexpr double kAside = 0.5;    // of the tolerance: nearer borders are one
 constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
 
 Box<3> box_of(const ReferenceSurface<3>& surface) {
@@ -340,7 +341,13 @@ Result<std::vector<Vec<3>>> Assembly::measure_distances(const SimplexMesh<3>& me
     Covered covered;
     if (members[m].bounds)
       covered = [&](const Vec<3>& x) {
-        return beyond(static_cast<int>(m), x) - kUnseen * chord_tolerance;
+        const int region = static_cast<int>(m);
+        const double under = beyond(region, x) - kUnseen * chord_tolerance;
+        if (under > 0) return under;
+        // Where two others touch, neither of them covers the border, nor is it the region's.
+        const Vec<3> step = kAside * chord_tolerance * partition->border(x, chord_tolerance).normal;
+        const double aside = std::min(beyond(region, x + step), beyond(region, x - step));
+        return 0.5 * (aside - 0.5 * kAside * chord_tolerance);
       };
     const Result<BoundaryDistance> distance =
         boundary_distance(body, members[m].walls(), threads, progress, covered);

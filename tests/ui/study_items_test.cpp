@@ -349,10 +349,14 @@ class RecoveryTest : OwnHome, public StudyItemsTest {
   RecoveryDialog* offered(const QStringList& files = {}) {
     window_.tools().offer_recovery(files);
     QTest::qWait(30);
-    return window_.findChild<RecoveryDialog*>();
+    auto* dialog = window_.findChild<RecoveryDialog*>();
+    // Its shortcuts are deaf until then.
+    EXPECT_TRUE(dialog == nullptr || QTest::qWaitForWindowActive(dialog, patience));
+    return dialog;
   }
   void expect_closed() {
-    EXPECT_TRUE(QTest::qWaitFor([this] { return !window_.findChild<RecoveryDialog*>(); }));
+    EXPECT_TRUE(
+        QTest::qWaitFor([this] { return !window_.findChild<RecoveryDialog*>(); }, patience));
   }
 
   std::filesystem::path kept_ =
@@ -408,18 +412,19 @@ TEST_F(RecoveryTest, OfSeveralOneIsChosenAndOthersAreDiscardedByKeys) {
   EXPECT_TRUE(dialog->findChild<QLabel*>("recovery_details")->text().contains("of 999999999"))
       << "the latest is chosen";
   QTest::keyClick(dialog, Qt::Key_W, Qt::AltModifier);
-  EXPECT_TRUE(QTest::qWaitFor([&] { return dialog->findChild<JournalView*>() != nullptr; }));
+  ASSERT_TRUE(
+      QTest::qWaitFor([&] { return dialog->findChild<JournalView*>() != nullptr; }, patience));
   dialog->findChild<JournalView*>()->close();
   dialog->activateWindow();
   ASSERT_TRUE(QTest::qWaitForWindowActive(dialog, patience));
   QTest::keyClick(dialog, Qt::Key_D, Qt::AltModifier);
   // A button that a key presses stays down for a moment.
-  EXPECT_TRUE(QTest::qWaitFor([&] { return !left("999999999"); }));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !left("999999999"); }, patience));
   EXPECT_TRUE(left("999999998"));
   EXPECT_TRUE(std::filesystem::exists(kept_ / "999999998.journal"));
   ASSERT_TRUE(dialog->isVisible());
   QTest::keyClick(dialog, Qt::Key_D, Qt::AltModifier);
-  EXPECT_TRUE(QTest::qWaitFor([&] { return !left("999999998"); }));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !left("999999998"); }, patience));
   EXPECT_FALSE(std::filesystem::exists(kept_ / "999999998.journal"));
   expect_closed();
 }

@@ -240,7 +240,7 @@ QVariant StudyModel::sizing_data(int row, int column, int role) const {
     if (role == Qt::ToolTipRole)
       return object.body.empty() ? tr("%1\nfor all bodies").arg(text(object.name))
                                  : tr("%1\nfor %2").arg(text(object.name), text(object.body));
-  } else if (column == value && role == Qt::DisplayRole) {
+  } else if (column == value && (role == Qt::DisplayRole || role == Qt::ToolTipRole)) {
     if (const auto* zone = std::get_if<AnalyticZone>(&object.asks))
       return units::length(zone->sizes.minCoeff(), 3);
     if (const auto* layer = std::get_if<BoundaryLayer>(&object.asks))

@@ -81,12 +81,13 @@ void StudyPanel::make_tree() {
   tree_->header()->setStretchLastSection(false);
   tree_->header()->setMinimumSectionSize(40);
   tree_->header()->setSectionResizeMode(StudyModel::name, QHeaderView::Stretch);
-  const int title =
-      tree_->header()->fontMetrics().horizontalAdvance(
-          model_->headerData(StudyModel::measured, Qt::Horizontal, Qt::DisplayRole).toString()) +
-      14;  // padding of the style
-  const std::pair<int, int> widths[] = {{StudyModel::value, 70},
-                                        {StudyModel::measured, std::max(46, title)}};
+  const auto width_of = [this](const QString& text) {
+    return tree_->header()->fontMetrics().horizontalAdvance(text) + 14;  // padding of the style
+  };
+  const QString title =
+      model_->headerData(StudyModel::measured, Qt::Horizontal, Qt::DisplayRole).toString();
+  const std::pair<int, int> widths[] = {{StudyModel::value, width_of("0.0000 mm")},
+                                        {StudyModel::measured, std::max(46, width_of(title))}};
   for (const auto& [column, width] : widths) {
     tree_->header()->setSectionResizeMode(column, QHeaderView::Fixed);
     tree_->setColumnWidth(column, width);
