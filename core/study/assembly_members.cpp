@@ -344,10 +344,15 @@ Result<std::vector<Vec<3>>> Assembly::measure_distances(const SimplexMesh<3>& me
         const int region = static_cast<int>(m);
         const double under = beyond(region, x) - kUnseen * chord_tolerance;
         if (under > 0) return under;
-        // Where two others touch, neither of them covers the border, nor is it the region's.
-        const Vec<3> step = kAside * chord_tolerance * partition->border(x, chord_tolerance).normal;
-        const double aside = std::min(beyond(region, x + step), beyond(region, x - step));
-        return 0.5 * (aside - 0.5 * kAside * chord_tolerance);
+        // Where two others touch, neither of them covers the border, but nothing around is the
+        // region's: of these ways one leads by .57 of its length to the far side of any plane.
+        const double aside = kAside * chord_tolerance;
+        double least = aside;
+        for (int way = 0; way < 8; ++way) {
+          const Vec<3> to(way & 1 ? 1 : -1, way & 2 ? 1 : -1, way & 4 ? 1 : -1);
+          least = std::min(least, beyond(region, x + aside / std::sqrt(3.0) * to));
+        }
+        return least + 0.1 * aside;
       };
     const Result<BoundaryDistance> distance =
         boundary_distance(body, members[m].walls(), threads, progress, covered);
