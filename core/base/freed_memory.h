@@ -7,8 +7,7 @@ namespace lamella {
 /// an adaption. For programs, once at their start; nothing where the C library is not glibc.
 void keep_freed_memory();
 
-/// Gives back what was kept: between steps that need much and nothing of each other. Takes 0.1 s a
-/// gigabyte.
+/// Gives back what was kept: between steps that need much and nothing of each other.
 void give_back_freed_memory();
 
 }  // namespace lamella

@@ -11,6 +11,7 @@ namespace {
 
 /// Elements, or nodes, that a thread takes at once.
 constexpr std::size_t range = 16384;
+/// What FaceUse can number.
 constexpr std::size_t most_elements = std::size_t{1} << 27;
 
 /// What it was, before one of several threads added to it.
@@ -53,7 +54,7 @@ bool sort_parity(std::array<NodeId, N>& v) {
 template <int D>
 std::vector<FaceUse<D>> face_uses(const std::vector<std::array<NodeId, D + 1>>& elements,
                                   std::size_t node_slots) {
-  // More than the words of FaceUse hold take 20 GB: as if there was no memory for them.
+  // The faces of so many take 8 GB: as if there was no memory for them.
   if (elements.size() >= most_elements) throw std::bad_array_new_length();
   // One bucket per smallest node: linear in the number of faces, and the buckets stay small.
   std::vector<std::size_t> start(node_slots + 1, 0);

@@ -26,7 +26,6 @@ namespace {
 constexpr int kCells = 6;          // of the first mesh of a box, along its longest side
 constexpr double kOfLayer = 0.25;  // size across a fuzzy border, of the layer there
 constexpr double kMinGuardShare = 0.3;
-constexpr double kAside = 0.5;    // of the tolerance: nearer borders are one
 constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
 
 Box<3> box_of(const ReferenceSurface<3>& surface) {
@@ -341,18 +340,7 @@ Result<std::vector<Vec<3>>> Assembly::measure_distances(const SimplexMesh<3>& me
     Covered covered;
     if (members[m].bounds)
       covered = [&](const Vec<3>& x) {
-        const int region = static_cast<int>(m);
-        const double under = beyond(region, x) - kUnseen * chord_tolerance;
-        if (under > 0) return under;
-        // Where two others touch, neither of them covers the border, but nothing around is the
-        // region's: of these ways one leads by .57 of its length to the far side of any plane.
-        const double aside = kAside * chord_tolerance;
-        double least = aside;
-        for (int way = 0; way < 8; ++way) {
-          const Vec<3> to(way & 1 ? 1 : -1, way & 2 ? 1 : -1, way & 4 ? 1 : -1);
-          least = std::min(least, beyond(region, x + aside / std::sqrt(3.0) * to));
-        }
-        return least + 0.1 * aside;
+        return beyond(static_cast<int>(m), x) - kUnseen * chord_tolerance;
       };
     const Result<BoundaryDistance> distance =
         boundary_distance(body, members[m].walls(), threads, progress, covered);

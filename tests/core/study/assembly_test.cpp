@@ -175,21 +175,6 @@ TEST(Assembly, WallsAreThoseThatAnInsertLeaves) {
   }
 }
 
-TEST(Assembly, WhereBodiesTouchTheBackgroundHasNoWall) {
-  Study study;
-  study.zones = {{"low", ZoneBox{{1, 1, 1}, {3, 3, 2}}},
-                 {"high", ZoneBox{{1, 1, 2}, {3, 3, 3}}},
-                 {"aside", ZoneBox{{0, 0, 0}, {1, 4, 4}}}};  // against the wall of the domain too
-  study.bodies = {{"low", 2}, {"high", 2}, {"aside", 2}};
-  study.domain = StudyDomain{ZoneBox{{0, 0, 0}, {4, 4, 4}}};
-  study.options.iterations = 2;
-  const Result<Outcome> outcome = mesh(study);
-  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
-  ASSERT_EQ(outcome->bodies.size(), 4u);
-  for (const BodyOutcome& body : outcome->bodies)
-    EXPECT_LE(body.boundary_distance.largest(), body.chord_tolerance) << body.name;
-}
-
 TEST(Assembly, ABorderThatReachesTheWallAsksForNoSmallerSizesThere) {
   const Result<Outcome> outcome = mesh(halves(Interfaces::exact));
   ASSERT_TRUE(outcome.ok()) << outcome.error().message;
