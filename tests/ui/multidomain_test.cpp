@@ -20,6 +20,7 @@
 #include "ui/panels/form.h"
 #include "ui/panels/report_panel.h"
 #include "ui/session/command_line.h"
+#include "ui/views/overlay.h"
 #include "ui/views/plot.h"
 
 namespace lamella::ui {
@@ -345,6 +346,11 @@ TEST_F(MultidomainTest, OverlapsAreMeasuredAndShown) {
   session().remove_item({ItemKind::body, 2});
   EXPECT_FALSE(session().overlaps());
   EXPECT_FALSE(text->toPlainText().contains("post"));
+  // So is its mark: nothing is left for Escape to take away.
+  auto* drawn = window_.findChild<Overlay*>();
+  const QImage after_removal = drawn->grab().toImage();
+  QTest::keyClick(&window_.view(), Qt::Key_Escape);
+  EXPECT_TRUE(after_removal == drawn->grab().toImage());
 
   find<LengthBox>("gap_width")->setValue(3);
   find<QPushButton>("look_for_overlaps")->click();

@@ -129,6 +129,9 @@ void ModelView::connect_session() {
             picks_->mark(at, text);
             overlay_->update();
           });
+  connect(&session_, &Session::overlaps_changed, this, [this] {
+    if (picks_) picks_->forget();  // the overlap marked is not there anymore
+  });
   connect(&session_, &Session::cut_asked, this, [this](const Vec<3>& at) {
     if (!scene_) return;
     Section cut = section().value_or(section_across({true, true, true}));

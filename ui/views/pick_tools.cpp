@@ -213,6 +213,7 @@ void PickTools::forget() {
   place_.reset();
   metric_text_.clear();
   ellipsoid_->VisibilityOff();
+  view_.update();
 }
 
 void PickTools::paint(QPainter& painter) const {
