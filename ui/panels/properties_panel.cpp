@@ -2,7 +2,6 @@
 
 #include <QLabel>
 #include <QScrollArea>
-#include <QStackedWidget>
 #include <QVBoxLayout>
 
 #include "ui/panels/body_page.h"
@@ -34,16 +33,17 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
   auto* layout = new QVBoxLayout(content_);
   layout->setContentsMargins(14, 10, 14, 12);
   layout->setSpacing(10);
-  pages_ = new QStackedWidget(content_);
-  body_ = new BodyPage(session, pages_);
-  group_ = new GroupPage(session, actions, pages_);
-  sizing_ = new SizingPage(session, forecaster, pages_);
-  cut_ = new CutPage(session, pages_);
-  domain_ = new DomainPage(session, pages_);
-  for (QWidget* page : std::initializer_list<QWidget*>{body_, group_, sizing_, cut_, domain_})
-    pages_->addWidget(page);
+  body_ = new BodyPage(session, content_);
+  group_ = new GroupPage(session, actions, content_);
+  sizing_ = new SizingPage(session, forecaster, content_);
+  cut_ = new CutPage(session, content_);
+  domain_ = new DomainPage(session, content_);
+  // Not a stack: that would be as high as the highest page and scroll where there is room.
+  for (QWidget* page : pages()) {
+    page->hide();
+    layout->addWidget(page, 1);
+  }
   mesh_ = new MeshPage(session, content_);
-  layout->addWidget(pages_, 1);
   empty_ = new QLabel(tr("The settings of what is selected appear here."));
   empty_->setObjectName("faint");
   empty_->setAlignment(Qt::AlignCenter);
@@ -58,10 +58,17 @@ PropertiesPanel::PropertiesPanel(Session& session, Forecaster& forecaster, Actio
   refresh();
 }
 
+std::array<QWidget*, 5> PropertiesPanel::pages() const {
+  return {body_, group_, sizing_, cut_, domain_};
+}
+
 void PropertiesPanel::refresh() {
   scroll_->setVisible(session_.has_bodies());
   empty_->setVisible(!session_.has_bodies());
-  pages_->setCurrentIndex(static_cast<int>(session_.item().kind));
+  QWidget* current = pages()[static_cast<std::size_t>(session_.item().kind)];
+  for (QWidget* page : pages())
+    if (page != current) page->hide();
+  current->show();
   body_->refresh();
   group_->refresh();
   sizing_->refresh();

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <QFrame>
+#include <array>
 
 class QLabel;
-class QStackedWidget;
 
 namespace lamella::ui {
 
@@ -27,12 +27,12 @@ class PropertiesPanel : public QFrame {
 
  private:
   void refresh();
+  std::array<QWidget*, 5> pages() const;  // in the order of ItemKind
 
   Session& session_;
   QWidget* content_;
   QWidget* scroll_;
   QLabel* empty_;
-  QStackedWidget* pages_;
   BodyPage* body_;
   GroupPage* group_;
   SizingPage* sizing_;

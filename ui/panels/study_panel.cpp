@@ -86,12 +86,9 @@ void StudyPanel::make_tree() {
   };
   const QString title =
       model_->headerData(StudyModel::measured, Qt::Horizontal, Qt::DisplayRole).toString();
-  const std::pair<int, int> widths[] = {{StudyModel::value, width_of("0.0000 mm")},
-                                        {StudyModel::measured, std::max(46, width_of(title))}};
-  for (const auto& [column, width] : widths) {
-    tree_->header()->setSectionResizeMode(column, QHeaderView::Fixed);
-    tree_->setColumnWidth(column, width);
-  }
+  tree_->header()->setSectionResizeMode(StudyModel::value, QHeaderView::ResizeToContents);
+  tree_->header()->setSectionResizeMode(StudyModel::measured, QHeaderView::Fixed);
+  tree_->setColumnWidth(StudyModel::measured, std::max(46, width_of(title)));
   // Most studies have no domain: its row comes with it.
   const auto expand = [this] {
     tree_->expandAll();
