@@ -2,6 +2,7 @@
 
 #include "app/cli_commands.h"
 #include "app/cli_common.h"
+#include "app/services.h"
 #include "core/cad/load_parts.h"
 #include "core/geometry/soup.h"
 
@@ -159,7 +160,9 @@ int run_info(const InfoCommand& c, Console& console) {
   LoadParams load = load_params(c.repair, c.wrap_spacing, c.cad);
   load.chord_tolerance = c.chord_tolerance;
   load.unit = unit_factor(c.unit);
-  const Inspection inspection = inspect_parts(c.part, load, console.progress());
+  const Inspection inspection =
+      names_mesh(c.part) ? Inspection{{}, {}, load_bodies(c.part, load, console.progress())}
+                         : inspect_parts(c.part, load, console.progress());
   say_diagnosis(inspection.diagnosis, console);
   const Result<std::vector<Part>>& parts = inspection.parts;
   if (!parts) return console.fail(of_input(parts.error()));

@@ -13,6 +13,7 @@
 #include "core/study/first_mesh.h"
 #include "core/study/forecast.h"
 #include "core/study/join.h"
+#include "core/study/mesh_parts.h"
 #include "core/study/study_file.h"
 
 namespace lamella::cli {
@@ -186,6 +187,8 @@ int run_mesh(const MeshCommand& c, const std::string& line, Console& console) {
   if (!saved.inputs.empty()) tell_notes(fit_to_parts(saved, c.inputs.front(), *parts), console);
   std::copy(saved.groups.begin(), saved.groups.end(), study.groups.begin());
   std::copy(saved.sizing.begin(), saved.sizing.end(), study.sizing.begin());
+  if (saved.inputs.empty())
+    for (const Part& part : *parts) add_groups_of_file(part, study);
   if (Result<void> applied = apply_to_bodies(c, *parts, study); !applied)
     return console.fail(applied.error());
 

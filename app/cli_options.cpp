@@ -446,7 +446,8 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
       "Ctrl-C writes the best mesh so far and ends with status 130. Sizes of --size-* are never "
       "coarser than the natural metric; a study can ask for more.");
   m->add_option("PART", mesh.inputs,
-                "STEP, IGES, BREP or STL files, or one study (.lamella or .json)")
+                "STEP, IGES, BREP or STL files, meshes whose bodies are taken, or one study "
+                "(.lamella or .json)")
       ->option_text("...")
       ->required();
   m->add_option("-o,--output", mesh.outputs,
@@ -585,7 +586,9 @@ std::optional<Command> parse(int argc, char** argv, int& status) {
   i->footer(
       "The file is diagnosed as it is: open, non-manifold and wrongly wound edges, duplicate and "
       "degenerate facets, facets that cross, thin walls, shells and free faces, with places.");
-  i->add_option("PART", info.part, "STEP, IGES, BREP or STL file")->option_text(" ")->required();
+  i->add_option("PART", info.part, "STEP, IGES, BREP or STL file, or a mesh")
+      ->option_text(" ")
+      ->required();
   add_chord(i, info.chord_tolerance);
   i->add_flag("--faces", info.faces, "List the faces: number, name, area and a point on them");
   add_unit(i, info.unit);

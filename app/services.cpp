@@ -14,6 +14,7 @@
 #endif
 #include "core/netgen/netgen_mesher.h"
 #include "core/study/measure.h"
+#include "core/study/mesh_parts.h"
 
 namespace lamella {
 
@@ -133,6 +134,23 @@ Result<ExportCertificate> write(const fs::path& file, const SimplexMesh<3>& mesh
 
 }  // namespace
 
+bool names_mesh(const fs::path& file) {
+  const Result<const MeshFormat*> format = mesh_formats().of_file(file);
+  return format && (*format)->read;
+}
+
+Result<std::vector<Part>> load_bodies(const fs::path& file, const LoadParams& params,
+                                      const Progress& progress) {
+  if (!names_mesh(file)) return load_parts(file, params, progress);
+  const Result<MeshContent> content = read_content(file, progress.portion(0, 0.5));
+  if (!content) return content.error();
+  Result<std::vector<Part>> parts = parts_of_mesh(content->mesh, progress.portion(0.5, 1));
+  if (parts || parts.error().code == Code::cancelled) return parts;
+  Error error = parts.error();
+  error.message = file.filename().string() + ": " + error.message;
+  return error;
+}
+
 Result<std::vector<Part>> load_all(const std::vector<fs::path>& files, const Study& study,
                                    const LoadParams& params, const Progress& progress) {
   std::vector<Part> all;
@@ -142,7 +160,7 @@ Result<std::vector<Part>> load_all(const std::vector<fs::path>& files, const Stu
     LoadParams own = params;
     own.unit = study.inputs[i].unit;
     Result<std::vector<Part>> parts =
-        load_parts(files[i], own, progress.portion(at / count, (at + 1) / count, "reading"));
+        load_bodies(files[i], own, progress.portion(at / count, (at + 1) / count, "reading"));
     if (!parts) {
       // Whatever keeps an input from being read, it is the input that is bad.
       Error error = parts.error();

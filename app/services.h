@@ -18,8 +18,16 @@ namespace lamella {
 
 /// The one place where the programs meet the adapters: readers, meshers and exporters.
 
+/// Whether a file is one of a mesh that this build can read, by its ending.
+bool names_mesh(const std::filesystem::path& file);
+
+/// `load_parts`, or the bodies of a mesh in any format, as core/study/mesh_parts.h has them.
+/// Errors: those of both, and of reading the mesh.
+Result<std::vector<Part>> load_bodies(const std::filesystem::path& file, const LoadParams& params,
+                                      const Progress& progress = {});
+
 /// The bodies of the inputs (their files as paths in `files`), in order and as `study_parts` calls
-/// them. Each STL has the unit of its input. Errors: those of load_parts; a missing file is
+/// them. Each STL has the unit of its input. Errors: those of load_bodies; a missing file is
 /// bad_input.
 Result<std::vector<Part>> load_all(const std::vector<std::filesystem::path>& files,
                                    const Study& study, const LoadParams& params,

@@ -8,7 +8,9 @@ namespace lamella {
 ui::Services window_services(const std::filesystem::path& sample_folder) {
   ui::Services services;
   services.load_parts = [](const std::filesystem::path& file, const LoadParams& params,
-                           const Progress& progress) { return load_parts(file, params, progress); };
+                           const Progress& progress) {
+    return load_bodies(file, params, progress);
+  };
   services.meshers = [](std::uint64_t seed) { return meshers_for(MesherChoice::automatic, seed); };
   services.run = run;
   services.read_result = read_result;

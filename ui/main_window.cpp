@@ -386,7 +386,7 @@ void MainWindow::update_actions() {
   const bool idle = session_->activity() == Activity::idle;
   const bool shown = !session_->empty();
   act[Act::open]->setEnabled(idle);
-  act[Act::add]->setEnabled(idle && session_->has_bodies());
+  act[Act::add]->setEnabled(idle);
   act[Act::reload]->setEnabled(idle && !session_->parts().empty());
   const bool parts = session_->has_bodies();
   // What is around the bodies goes with the domain.

@@ -50,16 +50,17 @@ QStringList local_files(const QMimeData* data) {
 void MainWindow::open_files(const QStringList& files, bool add) {
   if (files.isEmpty() || session_->activity() != Activity::idle) return;
   banner_->hide();
-  const bool part =
-      !is_study(files.front()) && !is_mesh(files.front(), session_->services().formats);
-  if (!(add && part) && !may_drop()) return;
+  // A mesh is opened to be seen; added, it is the shape of bodies.
+  const bool mesh = !add && is_mesh(files.front(), session_->services().formats);
+  add = add && session_->has_bodies() && !is_study(files.front());
+  if (!add && !may_drop()) return;
   folder_ = QFileInfo(files.front()).absolutePath();
   for (const QString& file : files) remember_file(file);
   if (is_study(files.front())) {
     session_->open_study(std::filesystem::absolute(files.front().toStdString()));
     return;
   }
-  if (is_mesh(files.front(), session_->services().formats)) {
+  if (mesh) {
     session_->open_mesh(files.front().toStdString());
     return;
   }
@@ -73,12 +74,12 @@ void MainWindow::ask_open(bool add) {
   for (const char* ending : {"step", "stp", "iges", "igs", "brep", "brp", "stl"})
     patterns << QString("*.%1 *.%2").arg(ending, QString(ending).toUpper());
   const QString parts = patterns.join(' ');
-  const QStringList files = QFileDialog::getOpenFileNames(
-      this, add ? tr("Add bodies") : tr("Open"), folder_,
-      add ? tr("Parts (%1)").arg(parts)
-          : tr("Studies and parts (*.lamella *.json %1);;Meshes "
-               "(%2);;All files (*)")
-                .arg(parts, mesh_patterns(session_->services().formats)));
+  const QStringList files =
+      QFileDialog::getOpenFileNames(this, add ? tr("Add bodies") : tr("Open"), folder_,
+                                    (add ? tr("Parts (%1);;Bodies of meshes (%2)")
+                                         : tr("Studies and parts (*.lamella *.json %1);;Meshes "
+                                              "(%2);;All files (*)"))
+                                        .arg(parts, mesh_patterns(session_->services().formats)));
   open_files(files, add);
 }
 

@@ -41,6 +41,7 @@ struct Part {
   double cad_volume = 0;           ///< mm^3 of the exact B-rep; of the triangles for an STL
   double chord_error = 0;          ///< mm, bound of the tessellation's distance to the exact shape
   std::vector<std::string> notes;  ///< what reading found worth telling (unit, free shells, welds)
+  std::vector<std::string> groups{};  ///< names of faces that are boundary groups in the file
 };
 
 }  // namespace lamella

@@ -178,12 +178,11 @@ Result<FarthestPoint> farthest_point(const ReferenceSurface<3>& from, const Refe
 
 Result<BoundaryDistance> boundary_distance(const SimplexMesh<3>& mesh,
                                            const ReferenceSurface<3>& surface, int threads,
-                                           const Progress& progress, const Covered& covered) {
+                                           const Progress& progress) {
   const ReferenceSurface<3> own = surface_of(mesh);
   Result<FarthestPoint> to = farthest_point(own, surface, 0, threads, progress.portion(0, 0.5));
   if (!to) return to.error();
-  Result<FarthestPoint> from =
-      farthest_point(surface, own, 0, threads, progress.portion(0.5, 1), covered);
+  Result<FarthestPoint> from = farthest_point(surface, own, 0, threads, progress.portion(0.5, 1));
   if (!from) return from.error();
   return BoundaryDistance{*to, *from};
 }

@@ -35,11 +35,10 @@ Result<FarthestPoint> farthest_point(const ReferenceSurface<3>& from, const Refe
                                      double resolution = 0, int threads = 0,
                                      const Progress& progress = {}, const Covered& covered = {});
 
-/// Both directions, between the facets of the mesh and the surface, as far as it is not covered.
-/// Errors: those of `farthest_point`.
+/// Both directions, between the facets of the mesh and the surface. Errors: those of
+/// `farthest_point`.
 Result<BoundaryDistance> boundary_distance(const SimplexMesh<3>& mesh,
                                            const ReferenceSurface<3>& surface, int threads = 0,
-                                           const Progress& progress = {},
-                                           const Covered& covered = {});
+                                           const Progress& progress = {});
 
 }  // namespace lamella

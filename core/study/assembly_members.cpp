@@ -9,6 +9,7 @@
 #include "core/geometry/soup.h"
 #include "core/geometry/triangles.h"
 #include "core/mesh/boundary.h"
+#include "core/mesh/interfaces.h"
 #include "core/mesh/sample_meshes.h"
 #include "core/multidomain/overlap.h"
 #include "core/natural/boundary_distance.h"
@@ -333,6 +334,7 @@ double Assembly::beyond(int region, const Vec<3>& x) const {
 Result<std::vector<Vec<3>>> Assembly::measure_distances(const SimplexMesh<3>& mesh, int threads,
                                                         const Progress& progress) {
   std::vector<Vec<3>> too_far;
+  const ReferenceSurface<3> all = surface_of_facets(with_interfaces(mesh));
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (body_of[m] < 0) continue;
     const SimplexMesh<3> body = extract_body(mesh, body_of[m]);
@@ -342,12 +344,17 @@ Result<std::vector<Vec<3>>> Assembly::measure_distances(const SimplexMesh<3>& me
       covered = [&](const Vec<3>& x) {
         return beyond(static_cast<int>(m), x) - kUnseen * chord_tolerance;
       };
-    const Result<BoundaryDistance> distance =
-        boundary_distance(body, members[m].walls(), threads, progress, covered);
-    if (!distance) return distance.error();
-    for (const FarthestPoint& far : {distance->to_surface, distance->from_surface})
+    // Where two others touch, what bounds this one is a border between them.
+    const ReferenceSurface<3> own = surface_of_facets(body);
+    const ReferenceSurface<3>& walls = members[m].walls();
+    const Result<FarthestPoint> to = farthest_point(own, walls, 0, threads, progress);
+    if (!to) return to.error();
+    const Result<FarthestPoint> from =
+        farthest_point(walls, covered ? all : own, 0, threads, progress, covered);
+    if (!from) return from.error();
+    for (const FarthestPoint& far : {*to, *from})
       if (far.distance > chord_tolerance) too_far.push_back(far.place);
-    outcomes[m].boundary_distance = *distance;
+    outcomes[m].boundary_distance = {*to, *from};
   }
   return too_far;
 }

@@ -35,10 +35,6 @@
         <translation>&amp;Ajouter un corps…</translation>
     </message>
     <message>
-        <source>Add the bodies of another file</source>
-        <translation>Ajouter les corps d&apos;un autre fichier</translation>
-    </message>
-    <message>
         <source>&amp;Save study</source>
         <translation>&amp;Enregistrer l&apos;étude</translation>
     </message>
@@ -449,6 +445,10 @@
     <message>
         <source>Read the files of the parts again; settings, groups and sizes stay</source>
         <translation>Relire les fichiers des pièces ; réglages, groupes et tailles restent</translation>
+    </message>
+    <message>
+        <source>Add the bodies of another file, be it CAD, an STL or a mesh</source>
+        <translation>Ajouter les corps d’un autre fichier : CAO, STL ou maillage</translation>
     </message>
 </context>
 <context>
@@ -2256,10 +2256,6 @@ ou tout autre solveur a trouvé, sur n&apos;importe quel maillage</translation>
         <translation>Démarrage</translation>
     </message>
     <message>
-        <source>Parts (%1)</source>
-        <translation>Pièces (%1)</translation>
-    </message>
-    <message>
         <source>Studies and parts (*.lamella *.json %1);;Meshes (%2);;All files (*)</source>
         <translation>Études et pièces (*.lamella *.json %1);;Maillages (%2);;Tous les fichiers (*)</translation>
     </message>
@@ -2356,6 +2352,10 @@ Réalisé avec %1.</translation>
     <message>
         <source>The mesh is valid but had not settled at iteration %1.</source>
         <translation>Le maillage est valide mais n&apos;était pas stabilisé à l&apos;itération %1.</translation>
+    </message>
+    <message>
+        <source>Parts (%1);;Bodies of meshes (%2)</source>
+        <translation>Pièces (%1);;Corps de maillages (%2)</translation>
     </message>
 </context>
 <context>

@@ -28,7 +28,7 @@ Actions::Actions(QObject* parent) : QObject(parent) {
       {Act::open, QT_TR_NOOP("&Open…"), "open", "Ctrl+O",
        QT_TR_NOOP("Open a study, a CAD file or an STL file")},
       {Act::add, QT_TR_NOOP("&Add body…"), "add", "Ctrl+Shift+O",
-       QT_TR_NOOP("Add the bodies of another file")},
+       QT_TR_NOOP("Add the bodies of another file, be it CAD, an STL or a mesh")},
       {Act::reload, QT_TR_NOOP("Re&load the parts"), "", "Ctrl+R",
        QT_TR_NOOP("Read the files of the parts again; settings, groups and sizes stay")},
       {Act::save, QT_TR_NOOP("&Save study"), "save", "Ctrl+S",

@@ -21,6 +21,11 @@ double unit_of_size(const std::vector<Part>& parts) {
 
 }  // namespace
 
+bool names_stl(const std::filesystem::path& file) {
+  const QString ending = QString::fromStdString(file.extension().string());
+  return ending.compare(".stl", Qt::CaseInsensitive) == 0;
+}
+
 Result<ReadParts> read_parts(const Services& services,
                              const std::vector<std::filesystem::path>& files,
                              std::vector<double>& units, const LoadParams& params,

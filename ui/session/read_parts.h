@@ -20,6 +20,9 @@ struct ReadParts {
   std::vector<PartSource> sources;  ///< one a part
 };
 
+/// Whether it is an STL by its ending: those have no unit.
+bool names_stl(const std::filesystem::path& file);
+
 /// The bodies of the files, in order, under the names that their files give them. `units`: one a
 /// file, mm; 0, of a file without unit, becomes the likely one of its size. Errors: those of
 /// Services::load_parts.

@@ -6,6 +6,7 @@
 
 #include "core/geometry/triangles.h"
 #include "core/study/measure.h"
+#include "core/study/mesh_parts.h"
 #include "core/study/report.h"
 #include "core/study/study_file.h"
 #include "ui/box_of.h"
@@ -24,10 +25,6 @@ QString file_name(const std::filesystem::path& file) { return text(file.filename
 
 QString bodies_text(std::size_t count) {
   return count == 1 ? Session::tr("1 body") : Session::tr("%1 bodies").arg(count);
-}
-
-bool is_stl(const std::filesystem::path& file) {
-  return text(file.extension().string()).compare(".stl", Qt::CaseInsensitive) == 0;
 }
 
 QString box_size(const ReferenceSurface<3>& surface) {
@@ -202,7 +199,7 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
   if (add && unit == 0 && !parts_->empty()) {
     unit = 1;
     for (const PartSource& source : sources_)
-      if (is_stl(source.file)) unit = source.unit;
+      if (names_stl(source.file)) unit = source.unit;
   }
   begin(Activity::loading,
         [this, files, add, params, unit](const Progress& progress) -> Worker::Done {
@@ -210,9 +207,9 @@ void Session::open(const std::vector<std::filesystem::path>& files, bool add, do
           std::vector<double> units;
           QString no_unit;
           for (const auto& file : files) {
-            const bool guess = is_stl(file) && unit == 0;
+            const bool guess = names_stl(file) && unit == 0;
             if (guess) no_unit = text(file.string());
-            units.push_back(guess ? 0 : is_stl(file) ? unit : 1);
+            units.push_back(guess ? 0 : names_stl(file) ? unit : 1);
           }
           Result<ReadParts> read = read_parts(services_, files, units, params, progress);
           for (std::size_t k = 0; k < files.size(); ++k)
@@ -427,6 +424,8 @@ void Session::take_parts(ReadParts read, const std::vector<StudyInput>& inputs, 
   std::vector<std::string> taken = study.left_out;
   for (const StudyZone& zone : study.zones) taken.push_back(zone.name);
   name_parts(all, first_new, taken, false);
+  for (std::size_t k = first_new; k < all.parts.size(); ++k)
+    add_groups_of_file(all.parts[k], study);
   study.inputs.insert(study.inputs.end(), inputs.begin(), inputs.end());
   const std::filesystem::path file = add ? file_ : std::filesystem::path();
   const std::string saved = saved_;

@@ -175,6 +175,18 @@ TEST(Assembly, WallsAreThoseThatAnInsertLeaves) {
   }
 }
 
+TEST(Assembly, WhereTwoBodiesTouchNothingIsMissedOfWhatIsAroundThem) {
+  Study study;
+  study.zones = {{"left", ZoneBox{{0, 0, 0}, {4, 6, 2}}}, {"right", ZoneBox{{4, 0, 0}, {8, 6, 2}}}};
+  study.domain = StudyDomain{ZoneBox{{-2, -2, -2}, {10, 8, 4}}};
+  study.options.iterations = 1;
+  const Result<Outcome> outcome = mesh(study);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  ASSERT_EQ(outcome->bodies.size(), 3u);
+  for (const BodyOutcome& body : outcome->bodies)
+    EXPECT_LE(body.boundary_distance.largest(), body.chord_tolerance) << body.name;
+}
+
 TEST(Assembly, ABorderThatReachesTheWallAsksForNoSmallerSizesThere) {
   const Result<Outcome> outcome = mesh(halves(Interfaces::exact));
   ASSERT_TRUE(outcome.ok()) << outcome.error().message;
