@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/simplex.h"
+#include "core/mesh/quality.h"
 
 namespace lamella {
 namespace {
@@ -16,6 +17,8 @@ constexpr double smooth_turn = 0.8;
 constexpr int rounds = 3;
 /// Of an element's volume: what a round must leave of it.
 constexpr double least_left = 0.5;
+/// c(T) below which an element gets no worse.
+constexpr double poor_quality = 0.3;
 /// Of the way allowed: steps below are rounding.
 constexpr double least_step = 1e-6;
 /// Points of a facet, to an edge, where its distance is asked.
@@ -118,6 +121,17 @@ class Balance {
     return false;
   }
 
+  /// Whether an element is poor, and more so than with the points before.
+  bool gets_poor(const std::array<NodeId, 4>& e, const std::vector<Vec<3>>& before) const {
+    if (!params_.metric ||
+        std::all_of(e.begin(), e.end(), [&](NodeId n) { return mesh_.points[n] == before[n]; }))
+      return false;
+    const Metric<3> m = mean_metric<3>(*params_.metric, e);
+    const double now = quality<3>(mesh_.corners(e), m);
+    return now < poor_quality &&
+           now < quality<3>({before[e[0]], before[e[1]], before[e[2]], before[e[3]]}, m);
+  }
+
   /// The smooth parts of borders at the nodes; nodes of facets over an edge stay.
   bool find_shares(const Progress& progress) {
     std::vector<char> rough(facets_.size());
@@ -218,7 +232,8 @@ class Balance {
         }
       };
       for (std::size_t e = 0; e < volume.size(); ++e)
-        if (signed_measure<3>(mesh_.corners(mesh_.elements[e])) < least_left * volume[e])
+        if (signed_measure<3>(mesh_.corners(mesh_.elements[e])) < least_left * volume[e] ||
+            gets_poor(mesh_.elements[e], start))
           back(mesh_.elements[e]);
       std::vector<char> off(facets_.size(), 0);
       parallel_each(facets_.size(), params_.threads, {}, [&](std::size_t i) {

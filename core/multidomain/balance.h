@@ -5,6 +5,7 @@
 
 #include "core/base/progress.h"
 #include "core/mesh/simplex_mesh.h"
+#include "core/metric/metric.h"
 #include "core/multidomain/partition.h"
 
 namespace lamella {
@@ -12,8 +13,9 @@ namespace lamella {
 struct BalanceParams {
   double most = 0;       ///< mm, > 0: how far a node may move, of the wall how far beyond it
   double tolerance = 0;  ///< mm: facets go no farther from their border, or than they were
-  const Zone<3>* domain = nullptr;  ///< what the mesh fills; null: its wall stays as it is
-  int threads = 0;                  ///< 0: all cores; the result does not depend on it
+  const Zone<3>* domain = nullptr;         ///< what the mesh fills; null: its wall stays as it is
+  int threads = 0;                         ///< 0: all cores; the result does not depend on it
+  const MetricField<3>* metric = nullptr;  ///< [node] of qualities; null: only volumes count
   /// [CAD face] mm: how deep the zone's own border lies below the shape it stands for, see
   /// chord_depth.h; beyond its end not at all
   std::vector<double> depth{};

@@ -279,6 +279,13 @@ bool StarOptimizer<D>::boundary_allows(const Apex& apex, const BoundarySite& sit
   return boundary_within(apex, site, std::max(lattice, deviation), std::max(tol, feature));
 }
 
+/// Whether a facet of tag t with this normal looks away from the surface at its nearest point.
+template <int D>
+bool StarOptimizer<D>::looks_away(const Nearest<D>& at, const Vec<D>& normal,
+                                  std::int32_t t) const {
+  return model_.tag(t).side * model_.normal(at.facet).dot(normal) < surface_turn;
+}
+
 /// The new boundary facets of an apex against the surface: nowhere turned, near the anchor
 /// that is removed, and within the limit of the original surface; so must the feature
 /// edges from the apex to its ends be. Fills retag_.
@@ -364,8 +371,15 @@ bool StarOptimizer<D>::boundary_within(const Apex& apex, const BoundarySite& sit
     const Vec<D> normal = facet_normal<D>(q).normalized();
     const auto at = model_.nearest(center, limit, retag_[i]);
     if (!at) return false;
-    const double side = model_.tag(retag_[i]).side;
-    if (!flat && side * model_.normal(at->facet).dot(normal) < surface_turn) return false;
+    if (!flat && looks_away(*at, normal, retag_[i])) {
+      // As where the surface has details below the tolerance; what does so already may go on.
+      std::array<Vec<D>, D> p = q;
+      p[top] = topo_.points[old[f.place]];
+      Vec<D> middle = Vec<D>::Zero();
+      for (const Vec<D>& x : p) middle += x / D;
+      const auto before = model_.nearest(middle, limit, retag_[i]);
+      if (!before || !looks_away(*before, facet_normal<D>(p).normalized(), retag_[i])) return false;
+    }
     if (!one_tag) {
       const std::int32_t t = model_.tag_on(retag_[i], at->facet);
       if (!model_.hard(t, retag_[i])) retag_[i] = t;

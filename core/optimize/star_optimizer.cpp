@@ -22,8 +22,6 @@ constexpr double floor_quality = 0.3;
 constexpr double least_gain = 1e-3, least_gain_of_places = 1e-6;
 /// Clock of birth, for a moment, of an element whose place in the cavity is taken.
 constexpr std::uint32_t replaced = std::numeric_limits<std::uint32_t>::max();
-/// c(T) below which a node may join any of its neighbors.
-constexpr double poor_quality = 0.3;
 
 }  // namespace
 

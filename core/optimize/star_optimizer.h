@@ -11,6 +11,9 @@
 
 namespace lamella {
 
+/// c(T) below which a node may join any of its neighbors, and go anywhere.
+inline constexpr double poor_quality = 0.3;
+
 /// By what the star chooses among local topologies.
 enum class Criterion {
   order,  ///< the lexicographic order (3.9) of sorted qualities
@@ -127,6 +130,7 @@ class StarOptimizer {
   bool boundary_within(const Apex& apex, const BoundarySite& site, double limit,
                        double feature_limit);
   bool keeps_vertices(const Apex& apex, const BoundarySite& site);
+  bool looks_away(const Nearest<D>& at, const Vec<D>& normal, std::int32_t t) const;
   double star_deviation(const BoundarySite& site) const;
   double feature_deviation(const BoundarySite& site) const;
   bool topology_allows(const Apex& apex, const BoundarySite& site) const;

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "core/optimize/star_optimizer.h"
 
@@ -9,6 +11,23 @@ namespace {
 constexpr double idle_move2 = 1e-4, idle_place2 = 1e-6;
 /// Squared metric length of a move over which the node's own metric still holds.
 constexpr double short_move2 = 0.01;
+/// Moves that are tried where an element is poor, of the shortest edge around.
+constexpr std::array poor_moves{0.5, 0.25, 0.1, 0.03};
+
+/// Unit vectors along the axes and all diagonals.
+template <int D>
+const std::vector<Vec<D>>& directions() {
+  static const std::vector<Vec<D>> all = [] {
+    std::vector<Vec<D>> d{Vec<D>::Zero()};
+    for (int k = 0; k < D; ++k)
+      for (std::size_t i = 0, n = d.size(); i < n; ++i)
+        for (const double side : {-1., 1.}) d.push_back(d[i] + side * Vec<D>::Unit(k));
+    d.erase(d.begin());
+    for (Vec<D>& v : d) v.normalize();
+    return d;
+  }();
+  return all;
+}
 
 }  // namespace
 
@@ -78,6 +97,15 @@ void StarOptimizer<D>::offer_moves(NodeId s, const BoundarySite& site) {
     }
   }
   if (sweep_.criterion != Criterion::order) return;
+  if (sweep_.attention < 1 && cavity_worst_ < poor_quality) {
+    // What keeps the worst element poor may leave one way out, wherever the center is.
+    double shortest2 = std::numeric_limits<double>::infinity();
+    for (NodeId n : link_) shortest2 = std::min(shortest2, metric_[s].quad(topo_.points[n] - old));
+    const Eigen::LLT<Mat<D>> llt(metric_[s].full());
+    for (const double part : poor_moves)
+      for (const Vec<D>& d : directions<D>())
+        offer_at(old + part * std::sqrt(shortest2) * Vec<D>(llt.matrixU().solve(d)));
+  }
   Vec<D> center = Vec<D>::Zero();
   int weight = 0;
   const auto add = [&](NodeId n) {

@@ -181,10 +181,11 @@ class AssemblyLoop {
   Result<void> balance(const Progress& progress) {
     if (std::exchange(balanced_, true)) return {};
     MeshState state = current_;
-    const std::size_t moved = balance_borders(state.mesh, *of_.partition, first_face_,
-                                              {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance,
-                                               of_.domain.get(), options_.threads, border_depths()},
-                                              progress);
+    const std::size_t moved =
+        balance_borders(state.mesh, *of_.partition, first_face_,
+                        {kOffBorder * of_.mesh_tolerance, of_.mesh_tolerance, of_.domain.get(),
+                         options_.threads, &state.metric, border_depths()},
+                        progress);
     for (int i = 0; exact_; ++i) {
       Result<std::vector<Vec<3>>> far =
           of_.measure_distances(state.mesh, options_.threads, progress);
@@ -192,7 +193,10 @@ class AssemblyLoop {
       if (i == kReturns || !put_back(state.mesh, current_.mesh.points, *far, of_.chord_tolerance))
         break;
     }
-    if (moved == 0) return {};
+    const Result<bool> eased =
+        exact_ ? of_.ease(state.mesh, state.metric, options_.threads, progress) : false;
+    if (!eased) return eased.error();
+    if (moved == 0 && !*eased) return {};
     if (!validate<3>(state.mesh).ok()) {
       if (!exact_) return {};
       const auto before = of_.measure_distances(current_.mesh, options_.threads, progress);

@@ -13,6 +13,7 @@
 #include "core/mesh/sample_meshes.h"
 #include "core/multidomain/overlap.h"
 #include "core/natural/boundary_distance.h"
+#include "core/optimize/ease.h"
 #include "core/study/domain.h"
 #include "core/study/first_mesh.h"
 #include "core/study/join.h"
@@ -27,7 +28,8 @@ namespace {
 constexpr int kCells = 6;          // of the first mesh of a box, along its longest side
 constexpr double kOfLayer = 0.25;  // size across a fuzzy border, of the layer there
 constexpr double kMinGuardShare = 0.3;
-constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
+constexpr double kOffPlane = 0.05;  // of the tolerance: how far poor elements leave planes
+constexpr double kUnseen = 0.01;    // of the tolerance: what lies deeper in others is no border
 
 Box<3> box_of(const ReferenceSurface<3>& surface) {
   Box<3> box;
@@ -357,6 +359,27 @@ Result<std::vector<Vec<3>>> Assembly::measure_distances(const SimplexMesh<3>& me
     outcomes[m].boundary_distance = {*to, *from};
   }
   return too_far;
+}
+
+Result<bool> Assembly::ease(SimplexMesh<3>& mesh, MetricField<3>& metric, int threads,
+                            const Progress& progress) {
+  const std::vector<Vec<3>> points = mesh.points;
+  const MetricField<3> before = metric;
+  EaseParams params;
+  params.off = kOffPlane * mesh_tolerance;
+  if (ease_poor(mesh, metric, params, progress) == 0) return false;
+  const std::vector<BodyOutcome> old = outcomes;
+  const Result<std::vector<Vec<3>>> far = measure_distances(mesh, threads, progress);
+  if (!far) return far.error();
+  for (std::size_t m = 0; m < old.size(); ++m) {
+    const double most = std::max(old[m].boundary_distance.largest(), chord_tolerance);
+    if (outcomes[m].boundary_distance.largest() <= most) continue;
+    mesh.points = points;
+    metric = before;
+    outcomes = old;
+    return false;
+  }
+  return true;
 }
 
 ReferenceSurface<3> Assembly::borders_of(const Member& member) const {

@@ -54,6 +54,10 @@ struct Assembly {
   /// tells the farthest places beyond the tolerance. Errors: cancelled.
   Result<std::vector<Vec<3>>> measure_distances(const SimplexMesh<3>& mesh, int threads,
                                                 const Progress& progress);
+  /// `ease_poor` on an exact mesh whose distances are set, which it sets anew; false where nothing
+  /// moved, as it does where a body gets too far from its surface by it. Errors: cancelled.
+  Result<bool> ease(SimplexMesh<3>& mesh, MetricField<3>& metric, int threads,
+                    const Progress& progress);
   /// What holds the borders of the member in the mesh: its surface, of an endless one the part of
   /// it that is within the domain.
   ReferenceSurface<3> borders_of(const Member& member) const;
