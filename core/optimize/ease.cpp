@@ -14,7 +14,8 @@
 namespace lamella {
 namespace {
 
-constexpr int passes = 6;
+/// At most; they end when nothing moves.
+constexpr int passes = 20;
 /// Gain of c(T) that is worth a move.
 constexpr double least_gain = 1e-3;
 /// Moves that are tried, of the shortest edge around.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/geometry/soup.h"
@@ -28,8 +29,9 @@ namespace {
 constexpr int kCells = 6;          // of the first mesh of a box, along its longest side
 constexpr double kOfLayer = 0.25;  // size across a fuzzy border, of the layer there
 constexpr double kMinGuardShare = 0.3;
-constexpr double kOffPlane = 0.05;  // of the tolerance: how far poor elements leave planes
-constexpr double kUnseen = 0.01;    // of the tolerance: what lies deeper in others is no border
+// Qualities below which nodes of an element leave their planes, and by what share of the tolerance.
+constexpr std::pair<double, double> kEased[] = {{0.3, 0.05}, {0.2, 0.25}};
+constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
 
 Box<3> box_of(const ReferenceSurface<3>& surface) {
   Box<3> box;
@@ -365,9 +367,10 @@ Result<bool> Assembly::ease(SimplexMesh<3>& mesh, MetricField<3>& metric, int th
                             const Progress& progress) {
   const std::vector<Vec<3>> points = mesh.points;
   const MetricField<3> before = metric;
-  EaseParams params;
-  params.off = kOffPlane * mesh_tolerance;
-  if (ease_poor(mesh, metric, params, progress) == 0) return false;
+  std::size_t moves = 0;
+  for (const auto& [quality, off] : kEased)
+    moves += ease_poor(mesh, metric, {quality, off * mesh_tolerance}, progress);
+  if (moves == 0) return false;
   const std::vector<BodyOutcome> old = outcomes;
   const Result<std::vector<Vec<3>>> far = measure_distances(mesh, threads, progress);
   if (!far) return far.error();
