@@ -85,14 +85,17 @@ class Ease {
   /// Normals of the facets at nodes of the boundary and of interfaces, and what holds nodes of a
   /// plane where groups meet.
   void find_normals() {
-    const SimplexMesh<3> all = with_interfaces(mesh_);
+    const WithInterfaces<3> listed = list_interfaces(mesh_);
+    const SimplexMesh<3>& all = listed.mesh;
     normals_.resize(mesh_.points.size());
+    inside_.assign(mesh_.points.size(), 1);
     std::map<std::array<NodeId, 2>, std::size_t> seen;
     for (std::size_t f = 0; f < all.facets.size(); ++f) {
       const auto& facet = all.facets[f];
       const Vec<3> normal = facet_normal<3>(all.corners(facet)).stableNormalized();
       for (int k = 0; k < 3; ++k) {
         normals_[static_cast<std::size_t>(facet[k])].push_back(normal);
+        if (f < listed.outer) inside_[static_cast<std::size_t>(facet[k])] = 0;
         const auto [a, b] = std::minmax(facet[k], facet[(k + 1) % 3]);
         const auto [other, added] = seen.try_emplace({a, b}, f);
         if (added || all.facet_group[other->second] == all.facet_group[f]) continue;
@@ -121,7 +124,7 @@ class Ease {
     return free;
   }
   bool on_borders(std::size_t n, const Vec<3>& x, double rounded) const {
-    const double most = std::max(params_.off, rounded);
+    const double most = std::max({params_.off, params_.across, rounded});
     return std::all_of(normals_[n].begin(), normals_[n].end(),
                        [&](const Vec<3>& v) { return std::abs(v.dot(x - start_[n])) <= most; });
   }
@@ -171,23 +174,25 @@ class Ease {
     double most = before + least_gain;
     Vec<3> best = old;
     Metric<3> best_metric = own;
+    const auto offer = [&](const Vec<3>& to) {
+      if (!on_borders(n, to, rounding * shortest)) return;
+      mesh_.points[n] = to;
+      metric_[n] = own;
+      if (!(worst(n, most) > most)) return;
+      metric_[n] = averaged(n, old, to);
+      const double now = worst(n, most);
+      if (!(now > most)) return;
+      most = now;
+      best = to;
+      best_metric = metric_[n];
+    };
     for (int d = 0; d < 27; ++d) {
       const Vec<3> towards = Vec<3>(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1).stableNormalized();
       const Vec<3> way = free * towards;
-      if (!(way.norm() > along_share)) continue;
-      for (const double part : parts) {
-        const Vec<3> to = old + part * shortest * way.normalized();
-        if (!on_borders(n, to, rounding * shortest)) continue;
-        mesh_.points[n] = to;
-        metric_[n] = own;
-        if (!(worst(n, most) > most)) continue;
-        metric_[n] = averaged(n, old, to);
-        const double now = worst(n, most);
-        if (!(now > most)) continue;
-        most = now;
-        best = to;
-        best_metric = metric_[n];
-      }
+      if (way.norm() > along_share)
+        for (const double part : parts) offer(old + part * shortest * way.normalized());
+      if (params_.across > 0 && inside_[n] && !normals_[n].empty())
+        for (const double part : {1., 0.3}) offer(old + part * params_.across * towards);
     }
     mesh_.points[n] = best;
     metric_[n] = best_metric;
@@ -203,6 +208,7 @@ class Ease {
   std::vector<double> quality_;               ///< [element]
   std::vector<std::size_t> first_, around_;   ///< [node] elements
   std::vector<std::vector<Vec<3>>> normals_;  ///< [node] what holds it
+  std::vector<char> inside_;                  ///< [node] not on the boundary
 };
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/geometry/soup.h"
@@ -29,8 +28,9 @@ namespace {
 constexpr int kCells = 6;          // of the first mesh of a box, along its longest side
 constexpr double kOfLayer = 0.25;  // size across a fuzzy border, of the layer there
 constexpr double kMinGuardShare = 0.3;
-// Qualities below which nodes of an element leave their planes, and by what share of the tolerance.
-constexpr std::pair<double, double> kEased[] = {{0.3, 0.05}, {0.2, 0.25}};
+// Of poor elements: quality, and the shares of the tolerance that nodes leave curved and all
+// borders by.
+constexpr EaseParams kEased[] = {{0.3, 0.05, 0}, {0.2, 0.25, 0.25}};
 constexpr double kUnseen = 0.01;  // of the tolerance: what lies deeper in others is no border
 
 Box<3> box_of(const ReferenceSurface<3>& surface) {
@@ -368,8 +368,9 @@ Result<bool> Assembly::ease(SimplexMesh<3>& mesh, MetricField<3>& metric, int th
   const std::vector<Vec<3>> points = mesh.points;
   const MetricField<3> before = metric;
   std::size_t moves = 0;
-  for (const auto& [quality, off] : kEased)
-    moves += ease_poor(mesh, metric, {quality, off * mesh_tolerance}, progress);
+  for (const auto& [quality, off, across] : kEased)
+    moves +=
+        ease_poor(mesh, metric, {quality, off * mesh_tolerance, across * mesh_tolerance}, progress);
   if (moves == 0) return false;
   const std::vector<BodyOutcome> old = outcomes;
   const Result<std::vector<Vec<3>>> far = measure_distances(mesh, threads, progress);
