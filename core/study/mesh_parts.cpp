@@ -6,6 +6,7 @@
 #include "core/geometry/soup.h"
 #include "core/mesh/boundary.h"
 #include "core/study/measure.h"
+#include "core/study/request.h"
 
 namespace lamella {
 namespace {
@@ -40,6 +41,11 @@ Result<std::vector<Part>> parts_of_mesh(const SimplexMesh<3>& mesh, const Progre
     if (body.elements.empty()) continue;
     Part part;
     part.name = mesh.bodies[b];
+    if (part.name == kBackground) {
+      // Taken by what will be around all bodies of a study.
+      part.name += " 1";
+      part.notes.push_back("It was called \"" + mesh.bodies[b] + "\", which no body can be.");
+    }
     part.surface = surface_of_facets(body);
     if (const Result<void> closed = check_closed(part.surface); !closed)
       return Error{Code::bad_input,

@@ -81,14 +81,13 @@ void StudyPanel::make_tree() {
   tree_->header()->setStretchLastSection(false);
   tree_->header()->setMinimumSectionSize(40);
   tree_->header()->setSectionResizeMode(StudyModel::name, QHeaderView::Stretch);
-  const auto width_of = [this](const QString& text) {
-    return tree_->header()->fontMetrics().horizontalAdvance(text) + 14;  // padding of the style
-  };
-  const QString title =
-      model_->headerData(StudyModel::measured, Qt::Horizontal, Qt::DisplayRole).toString();
+  const int title =
+      tree_->header()->fontMetrics().horizontalAdvance(
+          model_->headerData(StudyModel::measured, Qt::Horizontal, Qt::DisplayRole).toString()) +
+      14;  // padding of the style
   tree_->header()->setSectionResizeMode(StudyModel::value, QHeaderView::ResizeToContents);
   tree_->header()->setSectionResizeMode(StudyModel::measured, QHeaderView::Fixed);
-  tree_->setColumnWidth(StudyModel::measured, std::max(46, width_of(title)));
+  tree_->setColumnWidth(StudyModel::measured, std::max(46, title));
   // Most studies have no domain: its row comes with it.
   const auto expand = [this] {
     tree_->expandAll();

@@ -101,6 +101,15 @@ TEST(MeshParts, GroupsComeAlongUnlessTheStudyHasThem) {
                                         "symmetry of runner", "vent of runner"}));
 }
 
+TEST(MeshParts, ABackgroundBecomesABodyOfItsOwn) {
+  SimplexMesh<3> mesh = two_body_box<3>(2);
+  mesh.bodies = {"tray", "background"};
+  const std::vector<Part> parts = parts_of_mesh(mesh).value();
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].name, "tray");
+  EXPECT_EQ(parts[1].name, "background 1");
+}
+
 TEST(MeshParts, ABodyWithoutElementsIsNone) {
   SimplexMesh<3> mesh = unit_box<3>(2);
   mesh.bodies.push_back("empty");
